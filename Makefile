@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Needs Python 3.11 with venv, GCC, CMake and make; the rest is fetched once and kept under .venv and wheels.
+
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
+ZIP := dist/photon_maps-$(VERSION)-linux-x64.zip
+PYTHON := .venv/bin/python
+PIP := $(PYTHON) -m pip --quiet --disable-pip-version-check
+JOBS := $(shell nproc)
+# The Embree that the wheel brings; a pattern, for the name carries a checksum.
+EMBREE := $(CURDIR)/build/native/embreex.libs/libembree4-*.so.4
+
+NATIVE_WHEEL := wheels/photon_maps_native-$(VERSION)-py3-none-manylinux_2_34_x86_64.whl
+EMBREEX := wheels/embreex-4.4.0.post1
+EMBREEX_TAGS := manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl
+EMBREEX_WHEELS := $(EMBREEX)-cp311-cp311-$(EMBREEX_TAGS) $(EMBREEX)-cp313-cp313-$(EMBREEX_TAGS)
+
+# Folders are among the sources, so that a file that went away counts as a change.
+NATIVE_SOURCES := $(shell find engine/native -not -path 'engine/native/tests*' -not -path '*/__pycache__*')
+EXTENSION_SOURCES := blender_manifest.toml LICENSE __init__.py \
+    $(shell find engine operators ui \( -type d -o -name '*.py' \) -not -path 'engine/native*' -not -path '*/__pycache__*')
+PYTHON_FOLDERS := __init__.py engine operators ui tests tools benchmarks
+CXX_SOURCES = $(shell find engine/native benchmarks -name '*.cpp' -o -name '*.h' -o -name '*.c')
+
+MAKEFLAGS += --no-print-directory
+export CMAKE_GENERATOR := Unix Makefiles
+export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+export SOURCE_DATE_EPOCH := 315532800
+export PYTHONDONTWRITEBYTECODE := 1
+unexport PYTHONPATH PYTHONHOME
+
+# What is asked of `make demo`; by way of the environment, so that any file name will do.
+export BLEND OUT FRAME SIZE
+
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.PHONY: help demo package test test-native test-python lint format bench clean
+
+help:
+	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
+	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
+	@echo 'make bench     speed of the photon map and of the photon pass'
+	@echo 'make package   the extension for Blender: $(ZIP)'
+	@echo 'make format    bring all sources into the project style'
+	@echo 'make clean     remove build, dist and wheels; .venv stays'
+
+# --- Environment: each stamp is made again when the file it was made from changes ---
+
+.venv/bin/python:
+	python3.11 -m venv .venv
+
+.venv/build.stamp: requirements/build.txt | .venv/bin/python
+	$(PIP) install -r requirements/build.txt
+	@touch $@
+
+.venv/test.stamp: requirements/test.txt .venv/build.stamp
+	$(PIP) install -r requirements/test.txt
+	@touch $@
+
+.venv/system.stamp: tools/system_libraries.sh .venv/build.stamp
+	bash tools/system_libraries.sh .venv
+	@touch $@
+
+# --- Wheels: the native helper, and Embree as published ---
+
+$(NATIVE_WHEEL): $(NATIVE_SOURCES) .venv/build.stamp
+	@mkdir -p build wheels
+	$(PIP) wheel --no-build-isolation --no-deps --no-index \
+	    -C build-dir=$(CURDIR)/build/cmake/release -w wheels ./engine/native
+	@touch $@
+
+$(EMBREEX_WHEELS) &: requirements/bundled.txt | .venv/build.stamp
+	@for version in 3.11 3.13; do \
+	    $(PIP) download --no-deps --require-hashes --only-binary :all: --python-version $$version \
+	        --platform manylinux_2_28_x86_64 --dest wheels -r requirements/bundled.txt || exit 1; \
+	done
+	@touch $(EMBREEX_WHEELS)
+
+# What the wheels hold, for tests without Blender: beside .venv, so that Blender finds what it installed itself.
+build/native/stamp: $(NATIVE_WHEEL) $(firstword $(EMBREEX_WHEELS))
+	rm -rf build/native build/native.new
+	$(PIP) install --no-deps --no-index --target build/native.new $^
+	mv build/native.new build/native
+	@touch $@
+
+# --- The extension ---
+
+package: $(ZIP)
+	@echo 'Install it in Blender by Edit > Preferences > Get Extensions > Install from Disk: $(ZIP)'
+
+$(ZIP): $(EXTENSION_SOURCES) $(NATIVE_WHEEL) $(EMBREEX_WHEELS) tools/package.py | .venv/build.stamp
+	$(PYTHON) tools/package.py --output $@
+
+demo: $(ZIP) .venv/system.stamp
+	@$(PYTHON) tools/render.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --frame "$$FRAME" --size "$$SIZE"
+
+# --- Checks ---
+
+test: lint test-native test-python
+
+lint: .venv/test.stamp
+	.venv/bin/ruff check $(wildcard $(PYTHON_FOLDERS))
+	.venv/bin/ruff format --check $(wildcard $(PYTHON_FOLDERS))
+	@.venv/bin/clang-format --dry-run -Werror $(CXX_SOURCES)
+
+format: .venv/test.stamp
+	.venv/bin/ruff format $(wildcard $(PYTHON_FOLDERS))
+	.venv/bin/ruff check --fix $(wildcard $(PYTHON_FOLDERS))
+	.venv/bin/ruff format $(wildcard $(PYTHON_FOLDERS))
+	@.venv/bin/clang-format -i $(CXX_SOURCES)
+
+# The release build is the one the wheel was made from.
+test-native: build/native/stamp
+	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
+	cmake -S engine/native -B build/cmake/sanitize -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
+	    -DPHOTON_MAPS_SANITIZE=ON
+	@for kind in release sanitize; do \
+	    cmake --build build/cmake/$$kind && \
+	    ctest --test-dir build/cmake/$$kind --output-on-failure --no-tests=error || exit 1; \
+	done
+
+test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
+	timeout 900 $(PYTHON) -m pytest tests --ignore=tests/blender
+	timeout 900 $(PYTHON) -m pytest tests/blender -o pythonpath=.  # without build/native: the wheels are the zip's
+
+bench: build/native/stamp
+	@[ -e /usr/include/nanoflann.hpp ] || bash tools/apt_install.sh libnanoflann-dev
+	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_BENCHMARKS=ON
+	cmake --build build/cmake/release
+	@for program in build/cmake/release/benchmarks/*_bench; do \
+	    echo "== $$(basename $$program)"; PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) $$program || exit 1; \
+	done
+
+clean:
+	rm -rf build dist wheels

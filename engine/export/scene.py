@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One frame of a scene, as the depsgraph has evaluated it, becomes SceneData."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from photon_maps_native.scene_data import Instances, Light, Mesh, SceneData
+
+from ..messages import Messages
+from .camera import read_camera
+from .light import read_light
+from .material import MaterialTable
+from .mesh import COORDINATE_LIMIT, read_mesh
+from .world import read_world
+
+#: Objects that have nothing to show, or show it through the mesh that the depsgraph lists beside them:
+#: reading a curve, a text, a surface or a metaball as well would render it twice.
+WITHOUT_TRIANGLES = {
+    *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"),
+    *("CURVE", "FONT", "SURFACE", "META"),
+}
+LEFT_OUT = {
+    "VOLUME": "a volume",
+    "CURVES": "hair",
+    "POINTCLOUD": "a point cloud",
+    "GPENCIL": "a grease pencil",
+    "GREASEPENCIL": "a grease pencil",
+}
+#: Ray visibility that diffuse surfaces would have to honour; the other flags speak of rays that are not there.
+VISIBILITY = {"visible_camera": "the camera", "visible_diffuse": "diffuse light", "visible_shadow": "shadow rays"}
+ROLES = {"is_holdout": "a holdout", "is_shadow_catcher": "a shadow catcher"}
+
+
+@dataclass
+class _Rows:
+    """The instances of a scene while they are gathered."""
+
+    materials: MaterialTable
+    messages: Messages
+    override: bpy.types.Material | None  #: the view layer's material for everything
+    meshes: list[Mesh] = field(default_factory=list)
+    indices: dict[int, int | None] = field(default_factory=dict)  #: of meshes, by the address of Blender's mesh
+    instance_meshes: list[int] = field(default_factory=list)
+    transforms: list[Matrix] = field(default_factory=list)
+    first_slots: list[int] = field(default_factory=list)
+    slot_rows: dict[tuple[int, ...], int] = field(default_factory=dict)  #: first slot, by the materials of the slots
+    slot_materials: list[int] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+    seen: set[str] = field(default_factory=set)  #: names of the objects whose flags have been looked at
+
+
+def read_scene(depsgraph: bpy.types.Depsgraph, camera: bpy.types.Object, messages: Messages) -> SceneData:
+    """Copy everything that is rendered; nothing points into Blender's memory afterwards.
+
+    :param camera: the evaluated camera object.
+    """
+    layer = depsgraph.view_layer_eval
+    rows = _Rows(MaterialTable(messages), messages, layer.material_override)
+    for instance in depsgraph.object_instances:
+        # The object and its pointers are only good until the next instance: copy now.
+        if instance.show_self:
+            _add_object(rows, instance.object, instance.matrix_world)
+        if instance.show_particles and not instance.is_instance:
+            _name_hair(instance.object, messages)
+    data = SceneData(
+        meshes=rows.meshes,
+        instances=_instances(rows),
+        materials=rows.materials.materials,
+        lights=rows.lights,
+        camera=read_camera(camera, depsgraph, messages),
+        world=read_world(layer_world(depsgraph), messages),
+    )
+    _name_scene_settings(depsgraph, messages)
+    _name_darkness(depsgraph.scene.name, data, messages)
+    return data
+
+
+def layer_world(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
+    """Return the evaluated world of the view layer that is rendered."""
+    override = getattr(depsgraph.view_layer_eval, "world_override", None)  # from Blender 4.4 on
+    return override or depsgraph.scene_eval.world
+
+
+def _add_object(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+    if object.type in WITHOUT_TRIANGLES:
+        return
+    if object.type in LEFT_OUT:
+        rows.messages.add(object.name, f"is {LEFT_OUT[object.type]}, which is not supported; it is left out.")
+        return
+    if not _is_placed(matrix):
+        rows.messages.add(
+            object.name,
+            "has a position, rotation or scale that is not finite, or a scale of zero; it is left out.",
+            "Clear its transform.",
+        )
+        return
+    if object.type == "LIGHT":
+        light = read_light(object, matrix, rows.messages)
+        if light is not None:
+            rows.lights.append(light)
+    elif object.type == "MESH":
+        _add_mesh(rows, object, matrix)
+    else:
+        rows.messages.add(object.name, f"is of the type {object.type}, which is not supported; it is left out.")
+        return
+    _name_flags(rows, object)
+
+
+def _is_placed(matrix: Matrix) -> bool:
+    values = [value for row in matrix for value in row]
+    # NaN makes the comparison false. A determinant of zero cannot be inverted, which instancing needs.
+    return all(abs(value) < COORDINATE_LIMIT for value in values) and matrix.to_3x3().determinant() != 0.0
+
+
+def _add_mesh(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+    key = object.data.as_pointer()  # objects that share their mesh, or its evaluated form, share the triangles
+    if key not in rows.indices:
+        if not object.data.polygons and not object.modifiers:  # modifiers may leave nothing on purpose
+            rows.messages.add(object.name, "has no faces, so there is nothing to render.")
+        mesh = read_mesh(object.data, object.name, rows.messages, object.original.type == "MESH")
+        rows.indices[key] = None if mesh is None else len(rows.meshes)
+        rows.meshes += [] if mesh is None else [mesh]
+    index = rows.indices[key]
+    if index is None:
+        return
+    rows.instance_meshes.append(index)
+    rows.transforms.append(matrix.copy())
+    rows.first_slots.append(_first_slot(rows, object, rows.meshes[index]))
+
+
+def _first_slot(rows: _Rows, object: bpy.types.Object, mesh: Mesh) -> int:
+    """Return where the materials of an object's slots begin, adding them the first time."""
+    # The evaluated slots hold an object's own materials as well as those that Geometry Nodes set.
+    slots = [rows.materials.index(rows.override or slot.material) for slot in object.material_slots]
+    slots = slots or [rows.materials.index(rows.override)]
+    needed = 1 if mesh.slots is None else int(mesh.slots.max()) + 1
+    slots += [slots[-1]] * (needed - len(slots))  # faces beyond the last slot have the last one's material
+    row = tuple(slots)
+    if row not in rows.slot_rows:
+        rows.slot_rows[row] = len(rows.slot_materials)
+        rows.slot_materials += row
+    return rows.slot_rows[row]
+
+
+def _instances(rows: _Rows) -> Instances:
+    transforms = np.array([matrix[:3] for matrix in rows.transforms], dtype=np.float32)
+    return Instances(
+        meshes=np.array(rows.instance_meshes, dtype=np.uint32),
+        transforms=transforms.reshape(-1, 3, 4),
+        first_slots=np.array(rows.first_slots, dtype=np.uint32),
+        slot_materials=np.array(rows.slot_materials, dtype=np.uint32),
+    )
+
+
+def _name_flags(rows: _Rows, object: bpy.types.Object) -> None:
+    """Name, once for each object, the flags that cannot be honoured."""
+    if object.name in rows.seen:
+        return
+    rows.seen.add(object.name)
+    is_lamp = object.type == "LIGHT"
+    for flag, whom in VISIBILITY.items():
+        if not getattr(object, flag) and not (is_lamp and flag != "visible_diffuse"):
+            rows.messages.add(object.name, f"is to be invisible to {whom}, which is not supported; it is visible.")
+    for flag, what in ROLES.items():
+        if getattr(object, flag) and not is_lamp:
+            rows.messages.add(object.name, f"is {what}, which is not supported; it is rendered as it is.")
+    linking = object.light_linking
+    if linking and (linking.receiver_collection or linking.blocker_collection):
+        rows.messages.add(object.name, "has light linking, which is not supported; it lights everything.")
+
+
+def _name_hair(object: bpy.types.Object, messages: Messages) -> None:
+    for system in object.particle_systems:
+        if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+            messages.add(object.name, f'has the hair "{system.name}", which is not supported; it is left out.')
+
+
+def _name_scene_settings(depsgraph: bpy.types.Depsgraph, messages: Messages) -> None:
+    render = depsgraph.scene_eval.render
+    name = depsgraph.scene.name
+    if render.use_motion_blur:
+        messages.add(name, "has motion blur, which is not supported; the picture is sharp.")
+    if render.use_multiview:
+        messages.add(name, "has stereoscopy, which is not supported; every view shows the camera's.")
+    pending = list(depsgraph.view_layer_eval.layer_collection.children)
+    while pending:
+        collection = pending.pop()
+        pending += collection.children
+        if not collection.exclude and (collection.holdout or collection.indirect_only):
+            messages.add(
+                collection.name,
+                "is a collection with Holdout or Indirect Only, which is not supported; it is rendered as it is.",
+            )
+
+
+def _name_darkness(name: str, data: SceneData, messages: Messages) -> None:
+    """Say why a picture without any light is black."""
+    used = {int(material) for material in data.instances.slot_materials}
+    shining = any(any(data.materials[index].emission) for index in used)
+    if not (data.lights or shining or any(data.world)):
+        messages.add(
+            name,
+            "has no light: no lamp, no emission and a black world. The picture is black.",
+            "Add a lamp, or give the world a colour.",
+        )

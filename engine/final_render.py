@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""F12 and animation: export, session, passes. Blender calls it once for each view layer."""
+
+from __future__ import annotations
+
+import sys
+import time
+from concurrent.futures import Future, ThreadPoolExecutor, TimeoutError
+from operator import attrgetter
+from typing import TYPE_CHECKING
+
+import bpy
+
+from . import last_render
+from .messages import Messages
+from .passes import PASSES, PassInfo
+from .properties import render_settings
+from .settings import Stop
+from .summary import Summary, summarize
+
+if TYPE_CHECKING:
+    from .session import Session
+
+POLL_SECONDS = 0.02  #: between two looks at Esc
+SHOW_SECONDS = 0.5  #: between two pictures on the way
+
+
+def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    """Render the depsgraph's view layer; what fails is reported, never a silent black picture."""
+    try:
+        # Not at the top: without the helper the add-on still registers, and says what is missing.
+        from photon_maps_native import NativeError
+    except ImportError as error:
+        _fail(engine, f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
+        return
+    try:
+        _render_layer(engine, depsgraph)
+    except NativeError as error:
+        _fail(engine, f"The render stopped: {error}")
+    except Exception as error:
+        # Blender goes on after an exception as if the black picture were the render; say it in the window, too.
+        _fail(engine, f"The render stopped: {type(error).__name__}: {error}")
+        raise
+
+
+def wanted_passes(view_layer: bpy.types.ViewLayer) -> list[PassInfo]:
+    """Return the rows of the table of passes that a view layer asks for."""
+    return [info for info in PASSES if info.setting is None or attrgetter(info.setting)(view_layer)]
+
+
+def _fail(engine: bpy.types.RenderEngine, sentence: str) -> None:
+    engine.error_set(sentence)
+    engine.report({"ERROR"}, sentence)
+
+
+def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    from .export.scene import read_scene
+    from .session import Session
+
+    started, cpu_started = time.monotonic(), time.process_time()
+    camera = engine.camera_override
+    if camera is None:
+        _fail(engine, "The scene has no camera. Add one and make it the active camera.")
+        return
+    messages = Messages()
+    passes = wanted_passes(depsgraph.view_layer_eval)
+    for info in passes:
+        engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
+
+    engine.update_stats("", "Reading the scene")
+    scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages)
+    settings = render_settings(depsgraph.scene_eval)
+    with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
+        picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
+        _step_until_done(engine, session, picture)
+        statistics = session.statistics()
+        if statistics.passes == 0:
+            messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
+        summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
+        picture.show(session, summary)
+    last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, messages)
+    if bpy.app.background:
+        sys.stdout.write(summary.line() + "\n")
+        sys.stdout.flush()
+
+
+class _Picture:
+    """Blender's render result of one view layer."""
+
+    def __init__(
+        self, engine: bpy.types.RenderEngine, layer: str, size: tuple[int, int], passes: list[PassInfo]
+    ) -> None:
+        self._engine = engine
+        self._layer = layer
+        self._size = size
+        self._passes = passes
+        self._shown = time.monotonic()
+
+    def show_now_and_then(self, session: Session) -> None:
+        """Show the mean of the passes so far, if somebody looks on and has not seen it for half a second."""
+        if not bpy.app.background and time.monotonic() - self._shown > SHOW_SECONDS:
+            self.show(session)
+            self._shown = time.monotonic()
+
+    def show(self, session: Session, summary: Summary | None = None) -> None:
+        """Give Blender the passes as they are."""
+        # The region starts at 0, 0 with a border, too: Blender puts it in its place.
+        result = self._engine.begin_result(0, 0, *self._size, layer=self._layer)
+        try:
+            render_passes = result.layers[0].passes
+            for info in self._passes:
+                render_passes[info.name].rect.foreach_set(session.read(info.buffer).ravel())  # it wants a flat array
+            for field, value in summary.metadata().items() if summary else ():
+                self._engine.get_result().stamp_data_add_field(field, value)
+        finally:
+            self._engine.end_result(result)
+
+
+def _step_until_done(engine: bpy.types.RenderEngine, session: Session, picture: _Picture) -> None:
+    """Render pass after pass in a thread of its own, while this one watches for Esc and shows the picture."""
+    with ThreadPoolExecutor(max_workers=1, thread_name_prefix="photon_maps") as worker:
+        while session.progress < 1.0 and not engine.test_break():
+            if not _wait(engine, session, worker.submit(session.step)):
+                return
+            _tell(engine, session)
+            picture.show_now_and_then(session)
+
+
+def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[bool]) -> bool:
+    """Wait for a pass; cancel it when the user does."""
+    while True:
+        try:
+            return step.result(timeout=POLL_SECONDS)
+        except TimeoutError:
+            if engine.test_break():
+                session.cancel()  # said again at every look, for the pass may only be starting
+
+
+def _tell(engine: bpy.types.RenderEngine, session: Session) -> None:
+    settings, statistics = session.settings, session.statistics()
+    megabytes = statistics.memory_bytes / 2**20
+    limit = f"{settings.time_limit:g} s" if settings.stop == Stop.TIME else str(settings.passes)
+    engine.update_progress(session.progress)
+    engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
+    engine.update_stats(
+        "", f"Pass {statistics.passes} of {limit} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
+    )

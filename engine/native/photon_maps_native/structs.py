@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The structures of photon_maps.h for ctypes; the helper compares struct_size with its own."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, c_double, c_float, c_uint32, c_uint64
+
+FloatPointer = POINTER(c_float)
+UintPointer = POINTER(c_uint32)
+
+
+class SizedStructure(ctypes.Structure):
+    """A structure whose first field is its size."""
+
+    def __init__(self, **fields: object) -> None:
+        super().__init__(struct_size=ctypes.sizeof(type(self)), **fields)
+
+
+class PmMesh(SizedStructure):
+    """pm_mesh"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("vertex_count", c_uint64),
+        ("triangle_count", c_uint64),
+        ("vertices", FloatPointer),
+        ("triangles", UintPointer),
+        ("slots", UintPointer),
+        ("corner_normals", FloatPointer),
+    ]
+
+
+class PmInstances(SizedStructure):
+    """pm_instances"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("count", c_uint64),
+        ("slot_material_count", c_uint64),
+        ("meshes", UintPointer),
+        ("transforms", FloatPointer),
+        ("first_slots", UintPointer),
+        ("slot_materials", UintPointer),
+    ]
+
+
+class PmMaterial(SizedStructure):
+    """pm_material"""
+
+    _fields_ = [("struct_size", c_uint32), ("albedo", c_float * 3), ("emission", c_float * 3)]
+
+
+class PmLight(SizedStructure):
+    """pm_light"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("type", c_uint32),
+        ("visible_to_camera", c_uint32),
+        ("soft_falloff", c_uint32),
+        ("transform", c_float * 12),
+        ("power", c_float * 3),
+        ("size", c_float * 2),
+        ("spot_angle", c_float),
+        ("spot_blend", c_float),
+        ("spread", c_float),
+    ]
+
+
+class PmCamera(SizedStructure):
+    """pm_camera"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("type", c_uint32),
+        ("transform", c_float * 12),
+        ("window", c_float * 4),
+        ("resolution", c_uint32 * 2),
+        ("region", c_uint32 * 4),
+        ("clip_start", c_float),
+        ("clip_end", c_float),
+    ]
+
+
+class PmSettings(SizedStructure):
+    """pm_settings"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("integrator", c_uint32),
+        ("photon_count", c_uint64),
+        ("radius", c_float),
+        ("filter", c_uint32),
+        ("cone_k", c_float),
+        ("max_bounces", c_uint32),
+        ("seed", c_uint32),
+        ("use_progressive", c_uint32),
+        ("pixel_filter", c_uint32),
+        ("pixel_filter_width", c_float),
+        ("film_transparent", c_uint32),
+        ("threads", c_uint32),
+        ("passes", c_uint32),
+    ]
+
+
+class PmStatistics(SizedStructure):
+    """pm_statistics"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("passes", c_uint32),
+        ("photon_count", c_uint64),
+        ("photons_emitted", c_uint64),
+        ("photons_stored", c_uint64),
+        ("rays", c_uint64),
+        ("memory_bytes", c_uint64),
+        ("radius_first", c_float),
+        ("radius_last", c_float),
+        ("emitted", c_double * 3),
+        ("absorbed", c_double * 3),
+        ("escaped", c_double * 3),
+        ("cut", c_double * 3),
+        ("seconds_trace", c_double),
+        ("seconds_build", c_double),
+        ("seconds_gather", c_double),
+    ]
+
+
+class PmPhoton(ctypes.Structure):
+    """pm_photon"""
+
+    _fields_ = [
+        ("position", c_float * 3),
+        ("direction", c_float * 3),
+        ("normal", c_float * 3),
+        ("flux", c_float * 3),
+        ("bounce", c_uint32),
+    ]

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From pixels to rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sampling.h"
+#include "scene.h"
+
+namespace photon_maps {
+
+/// The weight of a point by its distance from the pixel's centre.
+enum class PixelFilter : uint32_t { box = 0, gaussian = 1, blackman_harris = 2 };
+
+/// An offset from a pixel's centre, in pixels, with the filter's own density: samples then count equally, and a pixel
+/// depends on no other (Ernst et al. 2006, filter importance sampling).
+class PixelSampler {
+  public:
+    /// @param width full width of the filter in pixels, > 0
+    PixelSampler(PixelFilter filter, float width);
+
+    Vec2 sample(float u, float v) const { return {offset(u), offset(v)}; }
+
+  private:
+    float offset(float u) const;
+
+    static constexpr size_t steps = 1024;
+    std::array<float, steps + 1> inverse_{};  ///< inverse of the filter's cumulative distribution
+};
+
+/// The camera, the frame it fills and the region of it that is rendered.
+struct Camera {
+    bool orthographic = false;
+    Transform transform;             ///< camera to world, rigid; looks along -z
+    float left, right, bottom, top;  ///< window of the whole frame at z = -1, or in scene units
+    uint32_t frame_width, frame_height;
+    uint32_t x, y, width, height;  ///< region; y counts from the bottom
+    float clip_start, clip_end;    ///< along the view direction
+
+    /// The ray through a point of the frame in pixels; a length of its direction is one unit of depth.
+    Ray ray(Vec2 pixel) const;
+};
+
+}  // namespace photon_maps

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "estimate.h"
+
+#include <vector>
+
+namespace photon_maps {
+
+namespace {
+
+struct Vec3x8 {
+    Float8 x, y, z;
+};
+
+[[gnu::always_inline]] inline Float8 dot(const Vec3x8 &a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// Returns eight normals as pack_normal left them, in units of 1/127.
+[[gnu::always_inline]] inline Vec3x8 unpack_normals(Int8 packed) {
+    return {to_float((packed << 24) >> 24), to_float((packed << 16) >> 24), to_float((packed << 8) >> 24)};
+}
+
+/// Returns eight directions as unpack_direction does one.
+[[gnu::always_inline]] inline Vec3x8 unpack_directions(Int8 packed) {
+    const Float8 u = to_float(packed & 0xffff) / 32767.0f - 1;
+    const Float8 v = to_float((packed >> 16) & 0xffff) / 32767.0f - 1;
+    const Float8 z = 1 - abs(u) - abs(v);
+    const Float8 fold = max(-z, Float8{});
+    const Float8 x = u < 0 ? u + fold : u - fold;
+    const Float8 y = v < 0 ? v + fold : v - fold;
+    const Float8 scale = 1 / sqrt(x * x + y * y + z * z);
+    return {x * scale, y * scale, z * scale};
+}
+
+/// Returns by how much photons count where the shading normal differs from the geometric one: each brought its flux
+/// by the cosine to the surface as it is and should bring it by that to the surface as it is shaded (Veach 1997,
+/// section 5.3); none from below the latter.
+[[gnu::always_inline]] inline Float8 shading_weights(Int8 packed_directions, const Query &query) {
+    // A photon that grazes the surface would weigh without bound. Those below 6 degrees bring 1 % of a uniform sky's
+    // light, so a bound there costs next to no accuracy and keeps single photons from showing as spots.
+    constexpr float least_cosine = 0.1f;
+    const Vec3x8 travel = unpack_directions(packed_directions);
+    const Float8 geometric = max(-dot(travel, query.normal), broadcast(least_cosine));
+    return max(-dot(travel, query.shading_normal), Float8{}) / geometric;
+}
+
+struct Sum {
+    Vec3 flux;  ///< W, weighted
+    uint32_t photons;
+};
+
+/// What a query sums over the photons around it; called with runs of photons.
+class Gather {
+  public:
+    Gather(const PhotonArrays &photons, const Query &query, const Kernel &kernel, std::span<const Barrier> barriers)
+        : photons_(photons),
+          query_(query),
+          kernel_(kernel),
+          barriers_(barriers),
+          frame_(query.normal),
+          inverse_radius_(1 / kernel.radius),
+          is_smooth_(!(query.shading_normal == query.normal)) {}
+
+    [[gnu::always_inline]] void operator()(size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
+    }
+
+    Sum sum() const {
+        int32_t count = 0;
+        for (size_t lane = 0; lane < lanes; ++lane) count -= count_[lane];
+        return {{total(red_), total(green_), total(blue_)}, static_cast<uint32_t>(count)};
+    }
+
+  private:
+    [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
+        // Within the radius and near the plane; lengths are in radii.
+        const Vec3 p = query_.position, n = query_.normal;
+        const Vec3x8 d{(load(&photons_.x[i]) - p.x) * inverse_radius_, (load(&photons_.y[i]) - p.y) * inverse_radius_,
+                       (load(&photons_.z[i]) - p.z) * inverse_radius_};
+        const Float8 distance_squared = d.x * d.x + d.y * d.y + d.z * d.z;
+        mask &= (distance_squared < 1) & (abs(dot(d, n)) < plane_tolerance);
+        if (bytes(mask) == 0) return;
+
+        // On the same side of the same surface, and not behind an edge of it.
+        mask &= dot(unpack_normals(load(&photons_.normal[i])), n) > normal_tolerance * 127;
+        if (!barriers_.empty()) {
+            const Float8 u = dot(d, frame_.x), v = dot(d, frame_.y);
+            for (const Barrier &barrier : barriers_) mask &= ~barrier.hides(u, v);
+        }
+
+        Float8 weight = kernel_.weights(distance_squared);
+        if (is_smooth_) weight *= shading_weights(load(&photons_.direction[i]), query_);
+        weight = select(mask, weight);
+        red_ += weight * load(&photons_.red[i]);
+        green_ += weight * load(&photons_.green[i]);
+        blue_ += weight * load(&photons_.blue[i]);
+        count_ += mask;
+    }
+
+    const PhotonArrays &photons_;
+    const Query &query_;
+    const Kernel &kernel_;
+    std::span<const Barrier> barriers_;
+    Frame frame_;
+    float inverse_radius_;
+    bool is_smooth_;
+    Float8 red_{}, green_{}, blue_{};
+    Int8 count_{};  ///< less the photons that counted
+};
+
+}  // namespace
+
+Estimate estimate_irradiance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel) {
+    const KernelRegion region(edges, query.position, query.normal, kernel);
+    const Sum sum = vectorized([&] {
+        Gather gather(map.photons(), query, kernel, region.barriers());
+        map.visit_range(query.position, kernel.radius, gather);
+        return gather.sum();
+    });
+    return {sum.flux / (kernel.norm() * region.share()), sum.photons};
+}
+
+float radius_holding(const PhotonMap &map, const Query &query, size_t k, float max_radius) {
+    // A photon is within a kernel of radius r if both its distance and its height over the plane tolerance are below r.
+    const PhotonArrays &photons = map.photons();
+    std::vector<float> radii;
+    for (float reach = max_radius / 1024;; reach = std::min(2 * reach, max_radius)) {
+        radii.clear();
+        map.visit_range(query.position, reach, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const Vec3 d = Vec3{photons.x[i], photons.y[i], photons.z[i]} - query.position;
+                const float height = std::abs(dot(d, query.normal));
+                const float radius = std::max(length(d), height / plane_tolerance);
+                const bool same_side = dot(unpack_normal(photons.normal[i]), query.normal) > normal_tolerance;
+                if (radius < reach && same_side) radii.push_back(radius);
+            }
+        });
+        if (radii.size() >= k) break;
+        if (reach == max_radius) return max_radius;
+    }
+    std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(k - 1));
+    return radii[k - 1];
+}
+
+}  // namespace photon_maps

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture: buffers that grow pass by pass, read as the mean of the passes. Depth and position stay those of the
+// first pass: a mean of two surfaces would lie on neither.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vec.h"
+
+namespace photon_maps {
+
+/// Buffers of a picture, numbered as pm_pass.
+enum class Buffer : uint32_t { combined, depth, normal, position, albedo, emission, direct, indirect };
+constexpr size_t buffer_count = 8;
+constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3};
+
+/// Depth where nothing is hit, as Blender has it.
+constexpr float no_depth = 1e10f;
+
+/// What one camera path brings to its pixel.
+struct PixelSample {
+    Vec3 emission, direct, indirect;  ///< radiance
+    float alpha = 1;
+    float depth = no_depth;
+    Vec3 normal, position, albedo;
+
+    Vec3 radiance() const { return emission + direct + indirect; }
+};
+
+class Film {
+  public:
+    /// @param wanted bit 1 << Buffer for each buffer to keep
+    Film(uint32_t width, uint32_t height, uint32_t wanted);
+
+    bool has(Buffer buffer) const { return !values(buffer).empty(); }
+    /// Number of floats in a buffer; 0 if it is not kept.
+    size_t size(Buffer buffer) const { return values(buffer).size(); }
+    /// Sets a pixel (index from the bottom left, row by row) to one sample.
+    void set(size_t pixel, const PixelSample &sample);
+    /// Adds a pass: a film of the same size.
+    void add(const Film &pass);
+    uint32_t passes() const { return passes_; }
+    /// Copies a buffer: the mean of the passes added; zero without any.
+    void read(Buffer buffer, std::span<float> pixels) const;
+    size_t memory_bytes() const;
+
+  private:
+    const std::vector<float> &values(Buffer buffer) const { return buffers_[static_cast<size_t>(buffer)]; }
+    void set(Buffer buffer, size_t pixel, Vec3 value);
+
+    size_t pixels_;
+    uint32_t passes_ = 0;
+    std::array<std::vector<float>, buffer_count> buffers_;
+};
+
+}  // namespace photon_maps

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What one photon leaves behind at a diffuse hit, in 32 bytes.
+#pragma once
+
+#include <cstdint>
+
+#include "vec.h"
+
+namespace photon_maps {
+
+/// Packs a unit vector into three signed bytes (error below 0.008 per component) and a byte of payload on top.
+inline uint32_t pack_normal(Vec3 n, uint32_t payload) {
+    const auto byte = [](float v) { return static_cast<uint32_t>(static_cast<int>(std::lround(v * 127)) & 0xff); };
+    return byte(n.x) | byte(n.y) << 8 | byte(n.z) << 16 | payload << 24;
+}
+
+inline Vec3 unpack_normal(uint32_t packed) {
+    const auto component = [packed](int shift) { return static_cast<float>(static_cast<int8_t>(packed >> shift)) / 127; };
+    return {component(0), component(8), component(16)};
+}
+
+/// Packs a unit vector into two 16-bit octahedral coordinates (Cigolle et al. 2014, JCGT 3(2)).
+inline uint32_t pack_direction(Vec3 d) {
+    const float scale = 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    float u = d.x * scale, v = d.y * scale;
+    if (d.z < 0) {
+        const float folded_u = (1 - std::abs(v)) * std::copysign(1.0f, u);
+        v = (1 - std::abs(u)) * std::copysign(1.0f, v);
+        u = folded_u;
+    }
+    const auto quantise = [](float t) { return static_cast<uint32_t>(std::lround((t + 1) * 32767)); };
+    return quantise(u) | quantise(v) << 16;
+}
+
+inline Vec3 unpack_direction(uint32_t packed) {
+    const float u = static_cast<float>(packed & 0xffff) / 32767 - 1;
+    const float v = static_cast<float>(packed >> 16) / 32767 - 1;
+    const float z = 1 - std::abs(u) - std::abs(v);
+    const float fold = std::max(-z, 0.0f);
+    return normalize({u - std::copysign(fold, u), v - std::copysign(fold, v), z});
+}
+
+/// A photon where it hit a diffuse surface.
+struct Photon {
+    Vec3 position;
+    Vec3 flux;           ///< W, as it arrived: not yet multiplied by the albedo
+    uint32_t normal;     ///< pack_normal: geometric normal on the side that was hit; payload: bounces, 255 at most
+    uint32_t direction;  ///< pack_direction: direction of travel, towards the surface
+
+    uint32_t bounce() const { return normal >> 24; }
+};
+static_assert(sizeof(Photon) == 32);
+
+}  // namespace photon_maps

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loop of passes: photons, map, camera rays; and what they cost.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "camera.h"
+#include "camera_pass.h"
+#include "film.h"
+#include "photon_trace.h"
+
+namespace photon_maps {
+
+enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1 };
+
+struct RenderSettings {
+    Integrator integrator;
+    uint64_t photon_count;  ///< per pass; 0: as many as the frame has pixels, within bounds
+    Kernel kernel;          ///< of the first pass; radius 0: chosen from pilot photons
+    uint32_t max_bounces;
+    uint32_t seed;
+    bool use_progressive;
+    PixelFilter pixel_filter;
+    float pixel_filter_width;
+    bool film_transparent;
+    int threads;
+    uint32_t buffers;  ///< bit 1 << Buffer
+};
+
+struct RenderStatistics {
+    uint64_t photons_emitted = 0, photons_stored = 0, rays = 0;
+    size_t peak_memory_bytes = 0;
+    float radius_first = 0, radius_last = 0;
+    FluxBalance balance;  ///< sum over the passes
+    double seconds_trace = 0, seconds_build = 0, seconds_gather = 0;
+};
+
+/// One picture of a scene, which must outlive it.
+class Render {
+  public:
+    Render(const Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings);
+
+    /// Renders a pass, a function of scene, camera, settings and index alone, and adds it to the film.
+    /// @throws Cancelled after cancel(); the film then holds the passes finished before
+    void render_pass(uint32_t index);
+
+    /// Makes the running pass, or the next one if none is running, throw Cancelled.
+    void cancel() { cancel_ = true; }
+
+    const Film &film() const { return film_; }
+    const RenderStatistics &statistics() const { return statistics_; }
+    uint64_t photon_count() const { return photon_count_; }
+
+    /// Photons of the last finished pass.
+    const std::vector<Photon> &direct_photons() const { return direct_photons_; }
+    const std::vector<Photon> &indirect_photons() const { return indirect_photons_; }
+    /// Irradiance at a point from photons like those.
+    Vec3 irradiance(const PhotonMap &map, Vec3 point, Vec3 normal) const;
+    PhotonMap map_of(const std::vector<Photon> &photons) const;
+
+  private:
+    bool needs_photons() const;
+    void choose_radius();
+    float radius_of_pass(uint32_t index) const;
+    void render_into(Film &pass_film, uint32_t index);
+
+    const Scene &scene_;
+    const Lights &lights_;
+    Camera camera_;
+    RenderSettings settings_;
+    PixelSampler pixel_sampler_;
+    uint64_t photon_count_;
+    std::optional<float> first_radius_;  ///< of pass 0, once chosen
+    EdgeIndex edges_;
+    Film film_;
+    RenderStatistics statistics_;
+    std::vector<Photon> direct_photons_, indirect_photons_;
+    float last_radius_ = 0;
+    std::atomic<bool> cancel_ = false;
+};
+
+}  // namespace photon_maps

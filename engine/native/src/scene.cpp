@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene.h"
+
+#include "parallel.h"
+#include "validate.h"
+
+namespace photon_maps {
+
+namespace {
+
+rtc::Ray to_embree(const Ray &ray) {
+    return {ray.origin.x,    ray.origin.y,    ray.origin.z,    ray.near, ray.direction.x,
+            ray.direction.y, ray.direction.z, 0,               ray.far,  0xffffffffu,
+            0,               0};
+}
+
+}  // namespace
+
+float position_error(const WorldTriangle &t) {
+    // Three roundings of the point's own and those of an instance's transform, in units of the largest coordinate
+    // (Pharr, Jakob, Humphreys 2023, section 6.8).
+    const float largest = max_component(max(abs(t.a), max(abs(t.b), abs(t.c))));
+    return 8 * std::numeric_limits<float>::epsilon() * largest;
+}
+
+Scene::~Scene() {
+    // Embree's scenes go before the arrays they share.
+    top_scene_.reset();
+    mesh_scenes_.clear();
+}
+
+void Scene::commit(int threads) {
+    count_uses();
+    move_single_uses_to_world();
+    find_bounds();
+    find_world_edges(threads);
+    build();
+}
+
+void Scene::count_uses() {
+    for (Mesh &mesh : meshes) mesh.use_count = 0;
+    for (const Instance &instance : instances) ++meshes[instance.mesh].use_count;
+    // Embree inverts the transforms of instances; one that flattens its mesh gets a copy to be moved instead.
+    for (Instance &instance : instances) {
+        if (meshes[instance.mesh].use_count == 1 || std::isnormal(instance.transform.determinant())) continue;
+        --meshes[instance.mesh].use_count;
+        meshes.push_back(meshes[instance.mesh]);
+        meshes.back().use_count = 1;
+        instance.mesh = static_cast<uint32_t>(meshes.size() - 1);
+    }
+}
+
+void Scene::find_bounds() {
+    std::vector<Bounds> object_bounds(meshes.size());
+    for (size_t m = 0; m < meshes.size(); ++m)
+        for (size_t v = 0; v < meshes[m].vertex_count(); ++v) object_bounds[m].add(meshes[m].vertices[v]);
+
+    bounds_ = Bounds();
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+        const Bounds &box = object_bounds[instances[i].mesh];
+        if (box.empty()) continue;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            const Vec3 p = instances[i].transform.point({corner & 1 ? box.upper.x : box.lower.x,
+                                                         corner & 2 ? box.upper.y : box.lower.y,
+                                                         corner & 4 ? box.upper.z : box.lower.z});
+            if (!is_finite(p) || max_component(abs(p)) > max_coordinate)
+                throw std::invalid_argument("instance " + std::to_string(i) + " reaches beyond 1e9 scene units");
+            bounds_.add(p);
+        }
+    }
+}
+
+void Scene::move_single_uses_to_world() {
+    for (Instance &instance : instances) {
+        Mesh &mesh = meshes[instance.mesh];
+        if (mesh.use_count != 1) continue;
+        for (Vec3 &vertex : mesh.vertices) vertex = instance.transform.point(vertex);
+        for (Vec3 &normal : mesh.corner_normals) normal = instance.transform.normal(normal);
+        instance.transform = Transform();
+    }
+}
+
+void Scene::find_world_edges(int threads) {
+    std::vector<std::vector<FeatureEdge>> edges(meshes.size());
+    parallel_for(threads, meshes.size(), nullptr, [&](size_t m) {
+        const Mesh &mesh = meshes[m];
+        if (mesh.use_count > 0)
+            edges[m] = find_feature_edges(std::span(mesh.vertices).first(mesh.vertex_count()), mesh.triangles);
+    });
+    for (const Instance &instance : instances) {
+        for (const FeatureEdge &edge : edges[instance.mesh])
+            feature_edges_.push_back(transformed(edge, instance.transform));
+    }
+}
+
+Scene::SceneHandle Scene::new_scene() const {
+    const rtc::Functions &f = embree_->functions();
+    SceneHandle scene(f.rtcNewScene(embree_->device()), {embree_.get()});
+    embree_->check("creating a scene");
+    // Without this flag rays slip between neighbouring triangles, and light leaks.
+    f.rtcSetSceneFlags(scene.get(), rtc::SceneFlags::robust);
+    f.rtcSetSceneBuildQuality(scene.get(), rtc::BuildQuality::medium);
+    return scene;
+}
+
+void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) const {
+    const rtc::Functions &f = embree_->functions();
+    const rtc::Geometry geometry = f.rtcNewGeometry(embree_->device(), rtc::GeometryType::triangle);
+    f.rtcSetSharedGeometryBuffer(geometry, rtc::BufferType::vertex, 0, rtc::Format::float3, mesh.vertices.data(), 0,
+                                 sizeof(Vec3), mesh.vertex_count());
+    f.rtcSetSharedGeometryBuffer(geometry, rtc::BufferType::index, 0, rtc::Format::uint3, mesh.triangles.data(), 0,
+                                 sizeof(Triangle), mesh.triangles.size());
+    f.rtcCommitGeometry(geometry);
+    f.rtcAttachGeometryByID(scene, geometry, id);
+    f.rtcReleaseGeometry(geometry);
+}
+
+void Scene::build() {
+    const rtc::Functions &f = embree_->functions();
+    // Meshes with several uses get a scene of their own, to be instanced.
+    for (const Mesh &mesh : meshes) {
+        mesh_scenes_.push_back(mesh.use_count > 1 ? new_scene() : SceneHandle(nullptr, {embree_.get()}));
+        if (mesh.use_count <= 1) continue;
+        attach_triangles(mesh_scenes_.back().get(), mesh, 0);
+        f.rtcCommitScene(mesh_scenes_.back().get());
+    }
+    top_scene_ = new_scene();
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+        const Mesh &mesh = meshes[instances[i].mesh];
+        if (mesh.use_count == 1) {
+            attach_triangles(top_scene_.get(), mesh, i);
+            continue;
+        }
+        const Transform &t = instances[i].transform;
+        const float rows[12] = {t.x.x, t.y.x, t.z.x, t.origin.x, t.x.y, t.y.y,
+                                t.z.y, t.origin.y, t.x.z, t.y.z, t.z.z, t.origin.z};
+        const rtc::Geometry geometry = f.rtcNewGeometry(embree_->device(), rtc::GeometryType::instance);
+        f.rtcSetGeometryInstancedScene(geometry, mesh_scenes_[instances[i].mesh].get());
+        f.rtcSetGeometryTransform(geometry, 0, rtc::Format::float3x4_row_major, rows);
+        f.rtcCommitGeometry(geometry);
+        f.rtcAttachGeometryByID(top_scene_.get(), geometry, i);
+        f.rtcReleaseGeometry(geometry);
+    }
+    f.rtcCommitScene(top_scene_.get());
+    embree_->check("building the acceleration structure");
+}
+
+bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {
+    rtc::RayHit rh{to_embree(ray), {}};
+    rh.hit.geometry = rh.hit.instance = rtc::invalid_id;
+    embree_->functions().rtcIntersect1(top_scene_.get(), &rh, nullptr);
+    if (rh.hit.geometry == rtc::invalid_id) return false;
+
+    // A mesh of a single use is a geometry of the top scene; others are met through their instance.
+    hit.instance = rh.hit.instance == rtc::invalid_id ? rh.hit.geometry : rh.hit.instance;
+    hit.triangle = rh.hit.primitive;
+    hit.distance = rh.ray.tfar;
+    hit.material = &material(hit.instance, hit.triangle);
+
+    // Position from the triangle, not from the distance: its error does not grow with the ray's length.
+    const WorldTriangle t = world_triangle(hit.instance, hit.triangle);
+    const Vec3 ab = t.b - t.a, ac = t.c - t.a;
+    hit.position = t.a + ab * rh.hit.u + ac * rh.hit.v;
+    hit.error = position_error(t);
+
+    // Geometric normal towards the ray; a triangle so thin that it has none takes the ray's own direction.
+    const Vec3 n = cross(ab, ac);
+    const float n_length = length(n);
+    hit.normal = n_length > 0 ? n / n_length : -normalize(ray.direction);
+    if (dot(hit.normal, ray.direction) > 0) hit.normal = -hit.normal;
+
+    // Shading normal on the same side.
+    hit.shading_normal = hit.normal;
+    const Instance &instance = instances[hit.instance];
+    const Mesh &mesh = meshes[instance.mesh];
+    if (!mesh.corner_normals.empty()) {
+        const Vec3 *corners = &mesh.corner_normals[3 * size_t{hit.triangle}];
+        const Vec3 object_normal =
+            corners[0] * (1 - rh.hit.u - rh.hit.v) + corners[1] * rh.hit.u + corners[2] * rh.hit.v;
+        const Vec3 world_normal = instance.transform.normal(object_normal);
+        const float squared = length_squared(world_normal);
+        if (squared > 0) {
+            hit.shading_normal = world_normal / std::sqrt(squared);
+            if (dot(hit.shading_normal, hit.normal) < 0) hit.shading_normal = -hit.shading_normal;
+        }
+    }
+    return true;
+}
+
+bool Scene::occluded(const Ray &ray) const {
+    rtc::Ray r = to_embree(ray);
+    embree_->functions().rtcOccluded1(top_scene_.get(), &r, nullptr);
+    return r.tfar < 0;  // Embree marks a met ray by -infinity
+}
+
+const Material &Scene::material(uint32_t instance, uint32_t triangle) const {
+    const Instance &i = instances[instance];
+    const Mesh &mesh = meshes[i.mesh];
+    const uint32_t slot = mesh.slots.empty() ? 0 : mesh.slots[triangle];
+    return materials[slot_materials[i.first_slot + slot]];
+}
+
+WorldTriangle Scene::world_triangle(uint32_t instance, uint32_t triangle) const {
+    const Instance &i = instances[instance];
+    const Mesh &mesh = meshes[i.mesh];
+    const Triangle &t = mesh.triangles[triangle];
+    const WorldTriangle corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    if (mesh.use_count == 1) return corners;
+    return {i.transform.point(corners.a), i.transform.point(corners.b), i.transform.point(corners.c)};
+}
+
+size_t Scene::memory_bytes() const {
+    size_t bytes = feature_edges_.size() * sizeof(FeatureEdge) + instances.size() * sizeof(Instance);
+    for (const Mesh &mesh : meshes)
+        bytes += mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle) +
+                 mesh.slots.size() * sizeof(uint32_t) + mesh.corner_normals.size() * sizeof(Vec3);
+    return bytes;
+}
+
+}  // namespace photon_maps

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles and their instances, and the rays that ask for them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "embree.h"
+#include "feature_edges.h"
+#include "material.h"
+#include "vec.h"
+
+namespace photon_maps {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// Triangles in object space.
+struct Mesh {
+    std::vector<Vec3> vertices;  ///< with one more at the end than counted: Embree reads 16 bytes at each
+    std::vector<Triangle> triangles;
+    std::vector<uint32_t> slots;        ///< material slot of each triangle; empty: all 0
+    std::vector<Vec3> corner_normals;  ///< three a triangle; empty: flat
+    uint32_t use_count = 0;             ///< instances that show it
+
+    size_t vertex_count() const { return vertices.size() - 1; }
+};
+
+/// A mesh where it stands.
+struct Instance {
+    uint32_t mesh;
+    uint32_t first_slot;  ///< into Scene::slot_materials
+    Transform transform;  ///< identity once a mesh that is used only here has been moved into world space
+};
+
+/// An axis-aligned box.
+struct Bounds {
+    Vec3 lower{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+               std::numeric_limits<float>::infinity()};
+    Vec3 upper = -lower;
+
+    void add(Vec3 p) {
+        lower = min(lower, p);
+        upper = max(upper, p);
+    }
+    bool empty() const { return lower.x > upper.x; }
+    Vec3 center() const { return empty() ? Vec3{} : lower * 0.5f + upper * 0.5f; }
+    /// Of the sphere about the centre that holds the box.
+    float radius() const { return empty() ? 0 : length(upper * 0.5f - lower * 0.5f); }
+};
+
+/// A ray from a point; `direction` need not be a unit vector, distances count in its length.
+struct Ray {
+    Vec3 origin, direction;
+    float near = 0, far = std::numeric_limits<float>::infinity();
+};
+
+/// What a ray met.
+struct SurfacePoint {
+    Vec3 position;
+    Vec3 normal;          ///< geometric, unit, on the side the ray came from
+    Vec3 shading_normal;  ///< unit, on the same side
+    float distance;       ///< in lengths of the ray's direction
+    float error;          ///< bound of the position's rounding error, in scene units
+    uint32_t instance, triangle;
+    const Material *material;
+
+    /// Where a ray that leaves to the side of `normal` may start without meeting the surface again.
+    Vec3 origin_above() const { return position + normal * error; }
+};
+
+/// The triangle that an instance shows, in world space.
+struct WorldTriangle {
+    Vec3 a, b, c;
+};
+
+/// Bound of the rounding error of a point computed on the triangle, in scene units.
+float position_error(const WorldTriangle &triangle);
+
+/// All of the scene's surfaces. Add, set, commit; then ask from any number of threads.
+class Scene {
+  public:
+    explicit Scene(std::shared_ptr<const Embree> embree) : embree_(std::move(embree)) {}
+    Scene(const Scene &) = delete;
+    Scene &operator=(const Scene &) = delete;
+    ~Scene();
+
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<uint32_t> slot_materials;
+    std::vector<Material> materials;
+
+    /// Moves meshes of a single use into world space, builds Embree's structure, and finds the feature edges.
+    /// @throws std::invalid_argument if an instance reaches beyond the coordinates that single precision bears
+    void commit(int threads);
+
+    bool intersect(const Ray &ray, SurfacePoint &hit) const;
+    bool occluded(const Ray &ray) const;
+
+    const Material &material(uint32_t instance, uint32_t triangle) const;
+    WorldTriangle world_triangle(uint32_t instance, uint32_t triangle) const;
+    const Bounds &bounds() const { return bounds_; }
+    /// Edges where surfaces stop or fold, in world space.
+    std::span<const FeatureEdge> feature_edges() const { return feature_edges_; }
+    size_t memory_bytes() const;
+
+  private:
+    struct SceneReleaser {
+        const Embree *embree;
+        void operator()(rtc::Scene scene) const { embree->functions().rtcReleaseScene(scene); }
+    };
+    using SceneHandle = std::unique_ptr<std::remove_pointer_t<rtc::Scene>, SceneReleaser>;
+
+    void count_uses();
+    void move_single_uses_to_world();
+    void find_bounds();
+    void find_world_edges(int threads);
+    void build();
+    SceneHandle new_scene() const;
+    void attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) const;
+
+    std::shared_ptr<const Embree> embree_;
+    std::vector<SceneHandle> mesh_scenes_;  ///< of the meshes that are instanced
+    SceneHandle top_scene_{nullptr, {nullptr}};
+    std::vector<FeatureEdge> feature_edges_;
+    Bounds bounds_;
+};
+
+}  // namespace photon_maps

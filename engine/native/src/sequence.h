@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Low-discrepancy numbers by the global index of a photon or of a pixel's sample: nothing is remembered between calls,
+// so any thread may ask for any number.
+// Owen-scrambled, shuffled Sobol points in four dimensions, padded to more by fresh shuffles
+// (Burley 2020, Practical Hash-based Owen Scrambling, JCGT 9(4); directions of Joe and Kuo 2008).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace photon_maps {
+
+/// Mixes the bits of a number (Wellons' lowbias32).
+constexpr uint32_t hash(uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    return x;
+}
+
+constexpr uint32_t hash(uint32_t a, uint32_t b) { return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
+
+/// Four numbers in [0, 1): point `index` of the sequence that `seed` selects.
+std::array<float, 4> sobol4(uint64_t index, uint32_t seed);
+
+/// The numbers of one photon or one camera path, four at a time, in a fixed order.
+class Sequence {
+  public:
+    Sequence(uint64_t index, uint32_t seed) : index_(index), seed_(seed) {}
+
+    /// The next four numbers in [0, 1).
+    std::array<float, 4> next() { return sobol4(index_, hash(seed_, group_++)); }
+
+  private:
+    uint64_t index_;
+    uint32_t seed_;
+    uint32_t group_ = 0;
+};
+
+}  // namespace photon_maps

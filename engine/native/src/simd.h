@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Eight numbers at a time, by the vector extensions that GCC and Clang share: the same bits on every processor.
+// Everything is inlined, so that it takes on the instruction set of the function it is used in.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace photon_maps {
+
+constexpr size_t lanes = 8;
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = int32_t __attribute__((vector_size(32)));  ///< of a comparison: -1 where it holds, else 0
+
+[[gnu::always_inline]] inline Float8 load(const float *source) {
+    Float8 v;
+    std::memcpy(&v, source, sizeof v);
+    return v;
+}
+
+[[gnu::always_inline]] inline Int8 load(const uint32_t *source) {
+    Int8 v;
+    std::memcpy(&v, source, sizeof v);
+    return v;
+}
+
+[[gnu::always_inline]] inline Float8 broadcast(float s) { return Float8{s, s, s, s, s, s, s, s}; }
+[[gnu::always_inline]] inline Float8 to_float(Int8 v) { return __builtin_convertvector(v, Float8); }
+[[gnu::always_inline]] inline Float8 min(Float8 a, Float8 b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Float8 max(Float8 a, Float8 b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline Float8 abs(Float8 v) { return max(v, -v); }
+
+/// Returns a mask of the first `count` lanes; of all where there are more.
+[[gnu::always_inline]] inline Int8 first_lanes(size_t count) {
+    const auto n = static_cast<int32_t>(count < lanes ? count : lanes);
+    return Int8{0, 1, 2, 3, 4, 5, 6, 7} < n;
+}
+
+/// Returns v where the mask holds and 0 elsewhere.
+[[gnu::always_inline]] inline Float8 select(Int8 mask, Float8 v) {
+    return reinterpret_cast<Float8>(reinterpret_cast<Int8>(v) & mask);
+}
+
+[[gnu::always_inline]] inline Float8 sqrt(Float8 v) {
+    Float8 root;
+    for (size_t i = 0; i < lanes; ++i) root[i] = std::sqrt(v[i]);
+    return root;
+}
+
+/// Returns a mask as one byte a lane, lane 0 in the lowest: its set lanes can be counted and walked.
+[[gnu::always_inline]] inline uint64_t bytes(Int8 mask) {
+    using Byte8 = int8_t __attribute__((vector_size(8)));
+    return std::bit_cast<uint64_t>(__builtin_convertvector(mask, Byte8));
+}
+
+/// Takes the first set lane out of such bytes, of which one must be set.
+[[gnu::always_inline]] inline uint32_t take_first(uint64_t &bytes) {
+    const auto lane = static_cast<uint32_t>(std::countr_zero(bytes)) / 8;
+    bytes &= ~(uint64_t{0xff} << 8 * lane);
+    return lane;
+}
+
+/// Returns the sum of the lanes, in a fixed order.
+[[gnu::always_inline]] inline float total(Float8 v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+#if defined(__x86_64__)
+template <typename Work>
+[[gnu::flatten, gnu::target("avx2")]] auto with_avx2(const Work &work) {
+    return work();
+}
+#endif
+
+/// Returns work(), compiled for 256-bit vectors as well where processors differ, and chosen when it runs.
+/// @param work what it calls must be inlined
+template <typename Work>
+[[gnu::flatten]] auto vectorized(const Work &work) {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) return with_avx2(work);
+#endif
+    return work();
+}
+
+}  // namespace photon_maps

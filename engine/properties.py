@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's side of the settings: the properties a user sees, and what a render makes of them."""
+
+from __future__ import annotations
+
+import enum
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from .settings import Filter, Integrator, PixelFilter, RenderSettings, Stop
+
+_DEFAULTS = RenderSettings()
+
+
+def _items(members: type[enum.IntEnum], texts: dict[enum.IntEnum, tuple[str, str]]) -> list[tuple]:
+    """Return the items of an EnumProperty: identifier, name, description and the number that is saved."""
+    return [(member.name, *texts[member], "NONE", member.value) for member in members]
+
+
+INTEGRATORS = _items(
+    Integrator,
+    {
+        Integrator.PHOTON_MAP: (
+            "Photon Map",
+            "Photons from the lights carry indirect light. Fast and smooth; the blur shrinks with every pass",
+        ),
+        Integrator.PATH_TRACING: (
+            "Path Tracing",
+            "Paths from the camera only, without photons. Slow and noisy, but "
+            "exact on average: the reference to compare with",
+        ),
+    },
+)
+FILTERS = _items(
+    Filter,
+    {
+        Filter.NONE: ("None", "All photons within the radius count alike. Least noise, most blur"),
+        Filter.CONE: ("Cone", "Near photons count more (Jensen 1996). Sharper edges, more noise; see Cone Constant"),
+        Filter.GAUSSIAN: ("Gaussian", "Near photons count more, along a bell curve. Sharper edges, more noise"),
+        Filter.EPANECHNIKOV: (
+            "Epanechnikov",
+            "Near photons count more, along a parabola. The least error for most pictures, and no slower",
+        ),
+    },
+)
+STOPS = _items(
+    Stop,
+    {
+        Stop.PASSES: ("Passes", "Stop after a number of passes: the same picture on every machine"),
+        Stop.TIME: ("Time", "Stop at the end of the first pass after a time: as exact as the time allows"),
+    },
+)
+PIXEL_FILTERS = _items(
+    PixelFilter,
+    {
+        PixelFilter.BOX: ("Box", "A pixel is the mean over its square. Hard edges, independent pixels"),
+        PixelFilter.GAUSSIAN: ("Gaussian", "A bell curve over the width. Soft edges"),
+        PixelFilter.BLACKMAN_HARRIS: (
+            "Blackman-Harris",
+            "A narrow bell curve without a cut, as in Cycles. Smooth edges that stay sharp",
+        ),
+    },
+)
+
+
+class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
+    """Settings of a scene: ``scene.photon_maps``."""
+
+    integrator: EnumProperty(
+        name="Method",
+        description="How light is found. Photon Map is faster wherever light arrives by way of other surfaces",
+        items=INTEGRATORS,
+        default=_DEFAULTS.integrator.name,
+    )
+    use_auto: BoolProperty(
+        name="Automatic",
+        description="Choose photon count, radius and filter from the scene: a good picture without tuning. "
+        "Switch off to set them by hand",
+        default=True,
+    )
+    photon_count: IntProperty(
+        name="Photons",
+        description="Photons that the lights send out in each pass; 0 chooses from the picture's pixels. "
+        "More make a pass slower and less noisy",
+        default=0,
+        min=0,
+        soft_max=10_000_000,
+    )
+    estimate: EnumProperty(
+        name="Estimate",
+        description="Which photons are counted around a point",
+        items=[("RADIUS", "Radius", "Those within a radius: fast, and exact in the end as it shrinks", "NONE", 0)],
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Within this distance photons are counted in the first pass; 0 chooses from their density. "
+        "Larger is smoother, more blurred and slower",
+        default=0.0,
+        min=0.0,
+        soft_max=10.0,
+        precision=4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+    )
+    filter: EnumProperty(
+        name="Filter",
+        description="How much photons count with their distance. It trades blur for noise; the speed is the same",
+        items=FILTERS,
+        default=_DEFAULTS.filter.name,
+    )
+    cone_k: FloatProperty(
+        name="Cone Constant",
+        description="Steepness of the cone filter: 1 is sharpest and noisiest, large values come near no filter. "
+        "The speed is the same",
+        default=_DEFAULTS.cone_k,
+        min=1.0,
+        soft_max=5.0,
+    )
+    use_progressive: BoolProperty(
+        name="Shrinking Radius",
+        description="Shrink the radius from pass to pass (Knaus and Zwicker 2011), so that the blur vanishes. "
+        "Off keeps the first radius: less noise at the same speed, but a blur that stays",
+        default=_DEFAULTS.use_progressive,
+    )
+    max_bounces: IntProperty(
+        name="Max Bounces",
+        description="How often light is scattered on after its first surface; 0 is direct light only. "
+        "Fewer are faster and lose light in bright, closed rooms",
+        default=_DEFAULTS.max_bounces,
+        min=0,
+        soft_max=128,
+        max=1024,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="Chooses another set of random numbers: other noise, the same speed and accuracy",
+        default=_DEFAULTS.seed,
+        min=0,
+    )
+    stop: EnumProperty(
+        name="Stop",
+        description="When the picture is done",
+        items=STOPS,
+        default=_DEFAULTS.stop.name,
+    )
+    passes: IntProperty(
+        name="Passes",
+        description="How many passes the picture is the mean of. Four times as many take four times as long "
+        "and halve the noise",
+        default=_DEFAULTS.passes,
+        min=1,
+        soft_max=4096,
+    )
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="Seconds after which no further pass is begun; at least one is rendered. More time, less noise",
+        default=_DEFAULTS.time_limit,
+        min=0.001,
+        soft_min=1.0,
+        soft_max=3600.0,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
+    pass_offset: IntProperty(
+        name="First Pass",
+        description="Index of the first pass, to share one picture among machines: 0 to 63 here, 64 to 127 there, "
+        "and take the mean. Speed and accuracy of a pass are the same",
+        default=_DEFAULTS.pass_offset,
+        min=0,
+    )
+    pixel_filter: EnumProperty(
+        name="Pixel Filter",
+        description="How samples are weighted around a pixel. It smooths edges; the speed is the same",
+        items=PIXEL_FILTERS,
+        default=_DEFAULTS.pixel_filter.name,
+    )
+    pixel_filter_width: FloatProperty(
+        name="Width",
+        description="Full width of the pixel filter. Wider is softer and less noisy at edges; the speed is the same",
+        default=_DEFAULTS.pixel_filter_width,
+        min=0.01,
+        soft_min=1.0,
+        max=10.0,
+        subtype="PIXEL",
+    )
+
+
+class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
+    """Settings of a view layer: ``view_layer.photon_maps``."""
+
+    use_pass_denoising: BoolProperty(
+        name="Denoising Data",
+        description="Albedo and normal for the Denoise node of the compositor. Costs memory, hardly any time",
+    )
+    use_pass_direct: BoolProperty(
+        name="Direct",
+        description="Light that was scattered once between light and camera. Costs memory, hardly any time",
+    )
+    use_pass_indirect: BoolProperty(
+        name="Indirect",
+        description="Light that was scattered more than once. Costs memory, hardly any time",
+    )
+
+
+def render_settings(scene: bpy.types.Scene) -> RenderSettings:
+    """Return what a render is asked to do; with Automatic on, the engine's own choice of photons and kernel."""
+    user = scene.photon_maps
+    by_hand = (
+        {}
+        if user.use_auto
+        else {
+            "photon_count": user.photon_count,
+            "radius": user.radius,
+            "filter": Filter[user.filter],
+            "cone_k": user.cone_k,
+        }
+    )
+    return RenderSettings(
+        integrator=Integrator[user.integrator],
+        max_bounces=user.max_bounces,
+        seed=user.seed,
+        use_progressive=user.use_progressive,
+        stop=Stop[user.stop],
+        passes=user.passes,
+        pass_offset=user.pass_offset,
+        time_limit=user.time_limit,
+        pixel_filter=PixelFilter[user.pixel_filter],
+        pixel_filter_width=user.pixel_filter_width,
+        film_transparent=scene.render.film_transparent,
+        threads=scene.render.threads if scene.render.threads_mode == "FIXED" else 0,
+        **by_hand,
+    )
+
+
+CLASSES = (PhotonMapsSceneSettings, PhotonMapsViewLayerSettings)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.photon_maps = PointerProperty(type=PhotonMapsSceneSettings)
+    bpy.types.ViewLayer.photon_maps = PointerProperty(type=PhotonMapsViewLayerSettings)
+
+
+def unregister() -> None:
+    del bpy.types.ViewLayer.photon_maps
+    del bpy.types.Scene.photon_maps
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

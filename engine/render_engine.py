@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine that Blender sees; every callback forwards."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import final_render, last_render
+
+
+class PhotonMapsEngine(bpy.types.RenderEngine):
+    """Photon Maps."""
+
+    bl_idname = "PHOTON_MAPS"
+    bl_label = "Photon Maps"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True  # Material Preview shows the nodes with EEVEE, as it does for Cycles
+    bl_use_shading_nodes_custom = False  # Cycles' nodes are what is read
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        super().__init__(*args, **kwargs)  # Blender 4.4 and later construct it with arguments of their own
+
+    def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        final_render.render(self, depsgraph)
+
+    def update_render_passes(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
+        for info in final_render.wanted_passes(view_layer):
+            self.register_pass(scene, view_layer, info.name, len(info.channels), info.channels, info.type)
+
+
+def register() -> None:
+    bpy.utils.register_class(PhotonMapsEngine)
+
+
+def unregister() -> None:
+    # An engine that is still registered when Blender exits makes some versions hang or crash.
+    bpy.utils.unregister_class(PhotonMapsEngine)
+    last_render.forget()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One render: create, step, read, cancel, free. Knows nothing of Blender."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from photon_maps_native import Device, NativeRender, NativeScene, SceneData, Statistics
+
+from .passes import PASSES, Pass
+from .settings import RenderSettings, Stop
+
+
+class Session:
+    """A scene in the helper, and the picture that grows there pass by pass.
+
+    Use as a context manager, or call close(); rendering in one thread and cancel() from another is allowed.
+    """
+
+    def __init__(self, scene: SceneData, settings: RenderSettings, buffers: frozenset[Pass] = frozenset({Pass.COMBINED})):
+        """Copy the scene into the helper and build its acceleration structure.
+
+        :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.
+        """
+        self.settings = settings
+        self._device = Device()
+        self._scene = NativeScene(self._device, scene)
+        self._render = NativeRender(self._scene, scene.camera, settings, buffers)
+        self._next_pass = settings.pass_offset
+        self._started = time.monotonic()
+
+    def step(self) -> bool:
+        """Render the next pass.
+
+        :return: False if it was cancelled; the picture then holds the passes finished before.
+        """
+        if not self._render.render_pass(self._next_pass):
+            return False
+        self._next_pass += 1
+        return True
+
+    def cancel(self) -> None:
+        """Make a running step() return within a tenth of a second; callable from any thread."""
+        self._render.cancel()
+
+    @property
+    def progress(self) -> float:
+        """How far the render is towards its stop, 0 to 1; it is done at 1."""
+        if self.settings.stop == Stop.TIME:
+            started = self._next_pass > self.settings.pass_offset
+            return min(1.0, (time.monotonic() - self._started) / self.settings.time_limit) if started else 0.0
+        return (self._next_pass - self.settings.pass_offset) / self.settings.passes
+
+    def read(self, buffer: Pass) -> np.ndarray:
+        """Return a buffer as (height, width, channels) float32, rows from the bottom: the mean of the passes."""
+        return self._render.read(buffer, channel_count(buffer))
+
+    def statistics(self) -> Statistics:
+        """Return what has been done so far."""
+        return self._render.statistics()
+
+    def close(self) -> None:
+        """Free everything the helper holds; calling it again does nothing."""
+        self._render.close()
+        self._scene.close()
+        self._device.close()
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def channel_count(buffer: Pass) -> int:
+    """Return the number of floats a pixel has in a buffer."""
+    return next(len(info.channels) for info in PASSES if info.buffer == buffer)

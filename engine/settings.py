@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one render was asked to do, as a plain dataclass made once per render.
+
+Blender's side of it, the properties a user sees, is in properties.py; the enumerations are shared.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+
+class Integrator(enum.IntEnum):
+    """Methods, numbered as in photon_maps.h and in saved files."""
+
+    PHOTON_MAP = 0
+    PATH_TRACING = 1
+
+
+class Filter(enum.IntEnum):
+    """Kernels of the radiance estimate, numbered as in photon_maps.h and in saved files."""
+
+    NONE = 0
+    CONE = 1
+    GAUSSIAN = 2
+    EPANECHNIKOV = 3
+
+
+class PixelFilter(enum.IntEnum):
+    """Pixel reconstruction filters, numbered as in photon_maps.h and in saved files."""
+
+    BOX = 0
+    GAUSSIAN = 1
+    BLACKMAN_HARRIS = 2
+
+
+class Stop(enum.IntEnum):
+    """When a render is done, numbered as in saved files."""
+
+    PASSES = 0
+    TIME = 1
+
+
+@dataclass(frozen=True)
+class RenderSettings:
+    """Settings of one render; zero photon_count or radius leaves the choice to the engine."""
+
+    integrator: Integrator = Integrator.PHOTON_MAP
+    photon_count: int = 0  #: emitted per pass; 0: chosen from the pixels
+    radius: float = 0.0  #: of the first pass, scene units; 0: chosen from the photons' density
+    filter: Filter = Filter.EPANECHNIKOV
+    cone_k: float = 1.0
+    max_bounces: int = 32
+    seed: int = 0
+    use_progressive: bool = True
+    stop: Stop = Stop.PASSES
+    passes: int = 64
+    pass_offset: int = 0
+    time_limit: float = 60.0  #: seconds
+    pixel_filter: PixelFilter = PixelFilter.BLACKMAN_HARRIS
+    pixel_filter_width: float = 1.5
+    film_transparent: bool = False
+    threads: int = 0  #: 0: one for every core

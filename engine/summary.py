@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one render did, in numbers: for the console line, the picture's metadata and the status line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from .messages import Messages
+
+if TYPE_CHECKING:
+    from photon_maps_native import Statistics
+
+VERSION = "0.1.0"  # a test compares it with the manifest
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The fields that scripts and render farms read; their names do not change."""
+
+    version: str
+    passes: int
+    seconds: float
+    cpu_seconds: float
+    photons_emitted: int
+    photons_stored: int
+    caustic_photons: int
+    rays: int
+    radius_first: float
+    radius_last: float
+    peak_memory_bytes: int
+    error_estimate: float | None
+    maps: list[str]
+    messages: list[str]
+
+    def line(self) -> str:
+        """Return the line for the console."""
+        return "photon_maps: " + json.dumps(asdict(self))
+
+    def metadata(self) -> dict[str, str]:
+        """Return the fields as text, for the picture."""
+        return {f"photon_maps.{name}": json.dumps(value) for name, value in asdict(self).items()}
+
+
+def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_seconds: float) -> Summary:
+    """Make the summary of a render.
+
+    :param seconds: wall time from the start of the export on.
+    :param cpu_seconds: of all threads of the process in that time.
+    """
+    return Summary(
+        version=VERSION,
+        passes=statistics.passes,
+        seconds=round(seconds, 4),
+        cpu_seconds=round(cpu_seconds, 4),
+        photons_emitted=statistics.photons_emitted,
+        photons_stored=statistics.photons_stored,
+        caustic_photons=0,
+        rays=statistics.rays,
+        radius_first=statistics.radius_first,
+        radius_last=statistics.radius_last,
+        peak_memory_bytes=statistics.memory_bytes,
+        error_estimate=None,
+        maps=["global"] if statistics.photons_stored else [],
+        messages=[str(message) for message in messages],
+    )

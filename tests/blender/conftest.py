@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender as a module, with the extension installed from its zip as a user would."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+# Before bpy is imported, or the user's own Blender is changed.
+RESOURCES = tempfile.mkdtemp(prefix="photon_maps_blender_")
+os.environ["BLENDER_USER_RESOURCES"] = RESOURCES
+
+import bpy  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+MODULE = "bl_ext.user_default.photon_maps"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def extension():
+    """The installed and enabled extension; disabled at the end, for Blender may not exit with its engine registered."""
+    zips = sorted((ROOT / "dist").glob("photon_maps-*-linux-x64.zip"))
+    assert zips, "run `make package` first"
+    bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(zips[-1]), enable_on_install=True)
+    yield sys.modules[MODULE]
+    bpy.ops.preferences.addon_disable(module=MODULE)
+    shutil.rmtree(RESOURCES)
+
+
+@pytest.fixture
+def scene(extension, tmp_path):
+    """An empty scene for the engine: 32 x 32 pixels, one pass, box filter, no world, uncompressed EXR."""
+    # Not read_factory_settings: that disables the extension.
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    render = scene.render
+    render.engine = "PHOTON_MAPS"
+    render.resolution_x = render.resolution_y = 32
+    render.use_compositing = render.use_sequencer = False
+    render.threads_mode, render.threads = "FIXED", 2
+    render.filepath = str(tmp_path / "picture.exr")
+    image = render.image_settings
+    if hasattr(image, "media_type"):  # from Blender 5.0 on the format is refused before the type of medium is set
+        image.media_type = "MULTI_LAYER_IMAGE"
+    image.file_format = "OPEN_EXR_MULTILAYER"
+    image.color_depth, image.exr_codec = "32", "NONE"
+    scene.photon_maps.passes = 1
+    scene.photon_maps.pixel_filter, scene.photon_maps.pixel_filter_width = "BOX", 1.0
+    return scene

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""F12: passes, view layers, animation, Esc, and what is said when something goes wrong."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Matrix
+
+from tests.blender.exr import read_exr
+from tests.blender.scenes import (
+    camera_above,
+    lamp,
+    link,
+    material,
+    messages,
+    quad,
+    render,
+    render_with_cycles,
+    render_with_summary,
+    write,
+)
+
+FIELDS = [
+    *("version", "passes", "seconds", "cpu_seconds", "photons_emitted", "photons_stored", "caustic_photons", "rays"),
+    *("radius_first", "radius_last", "peak_memory_bytes", "error_estimate", "maps", "messages"),
+]
+
+
+@pytest.fixture
+def corner(scene):
+    """A floor and a red wall under a lamp: direct and indirect light."""
+    quad(scene, "Floor", half=2.0)
+    quad(
+        scene,
+        "Wall",
+        Matrix.Translation((-1.0, 0.0, 1.0)) @ Matrix.Rotation(math.pi / 2, 4, "Y"),
+        color=(0.8, 0.1, 0.1),
+    )
+    lamp(scene, "AREA", Matrix.Translation((0.5, 0.0, 2.0)), energy=50.0, size=0.5)
+    camera_above(scene, scale=3.0)
+    return scene
+
+
+class Watched:
+    """A render engine whose calls are watched, and whose Esc can be pressed."""
+
+    def __init__(self, engine, after=None):
+        self._engine = engine
+        self._after = after
+        self.polls = []
+
+    def __getattr__(self, name):
+        return getattr(self._engine, name)
+
+    def test_break(self):
+        self.polls.append(time.monotonic())
+        return self._after is not None and self._after(self)
+
+
+@pytest.fixture
+def watch(extension, monkeypatch):
+    """Return a function that makes Esc be pressed when its argument says so, and the list of engines watched."""
+    from bl_ext.user_default.photon_maps.engine import final_render
+
+    original = final_render.render
+
+    def arrange(after=None):
+        watched = []
+
+        def instead(engine, depsgraph):
+            watched.append(Watched(engine, after))
+            original(watched[-1], depsgraph)
+
+        monkeypatch.setattr(final_render, "render", instead)
+        return watched
+
+    return arrange
+
+
+def test_the_summary_has_every_field(corner):
+    corner.photon_maps.passes = 3
+    passes, attributes, lines = write(corner)
+    (line,) = [line for line in lines if line.startswith("photon_maps: ")]
+    summary = json.loads(line.removeprefix("photon_maps: "))
+    assert list(summary) == FIELDS
+    assert summary["passes"] == 3 and summary["photons_stored"] > 0 and summary["maps"] == ["global"]
+    assert summary["photons_emitted"] > summary["caustic_photons"] == 0
+    assert summary["radius_first"] > summary["radius_last"] > 0.0
+    assert summary["rays"] > 3 * 32 * 32 and summary["peak_memory_bytes"] > 0 and summary["error_estimate"] is None
+    assert summary["messages"] == [] and summary["seconds"] > 0.0 and summary["cpu_seconds"] > 0.0
+    assert np.isfinite(passes["ViewLayer.Combined"]).all()
+    for field in FIELDS:
+        assert json.loads(attributes[f"photon_maps.{field}"]) == summary[field], field
+
+
+def test_path_tracing_is_the_same_picture_without_photons(corner):
+    corner.photon_maps.passes = 64
+    mapped = render(corner)["Combined"]
+    corner.photon_maps.integrator = "PATH_TRACING"
+    traced, summary = render_with_summary(corner)
+    assert summary["maps"] == [] and summary["photons_emitted"] == 0
+    np.testing.assert_allclose(mapped.mean(axis=(0, 1)), traced["Combined"].mean(axis=(0, 1)), rtol=0.02)
+
+
+def test_indirect_light_is_that_of_cycles(corner):
+    corner.photon_maps.passes = 64
+    ours = render(corner)["Combined"]
+    theirs = render_with_cycles(corner, samples=512, bounces=32)["Combined"]
+    np.testing.assert_allclose(ours.mean(axis=(0, 1)), theirs.mean(axis=(0, 1)), rtol=0.01)
+
+
+def test_passes_add_up_and_are_there_when_asked_for(corner):
+    view_layer = bpy.context.view_layer
+    assert set(render(corner)) == {"Combined"}
+    view_layer.use_pass_z = view_layer.use_pass_normal = view_layer.use_pass_position = True
+    view_layer.use_pass_emit = True
+    ours = view_layer.photon_maps
+    ours.use_pass_denoising = ours.use_pass_direct = ours.use_pass_indirect = True
+    passes = render(corner)
+    assert set(passes) == {
+        *("Combined", "Depth", "Normal", "Position", "Emission", "Direct", "Indirect"),
+        *("Denoising Albedo", "Denoising Normal"),
+    }
+    total = passes["Emission"] + passes["Direct"] + passes["Indirect"]
+    np.testing.assert_allclose(passes["Combined"][..., :3], total, rtol=1e-4, atol=1e-6)
+    assert passes["Direct"].any() and passes["Indirect"].any()
+    floor = passes["Position"][..., 2] == 0.0
+    np.testing.assert_allclose(passes["Denoising Albedo"][floor], 0.5, rtol=1e-5)
+    np.testing.assert_allclose(
+        passes["Denoising Normal"][floor], np.broadcast_to((0, 0, 1), (floor.sum(), 3)), atol=1e-5
+    )
+
+
+def test_view_layers_are_rendered_each_and_only_if_on(corner):
+    first = corner.view_layers[0]
+    second, off = corner.view_layers.new("Second"), corner.view_layers.new("Off")
+    off.use = False
+    walls = bpy.data.collections.new("Walls")
+    corner.collection.children.link(walls)
+    wall = bpy.data.objects["Wall"]
+    corner.collection.objects.unlink(wall)
+    walls.objects.link(wall)
+    second.layer_collection.children["Walls"].exclude = True
+    second.photon_maps.use_pass_direct = True
+    passes, _, lines = write(corner)
+    assert set(passes) == {f"{first.name}.Combined", "Second.Combined", "Second.Direct"}
+    assert sum(line.startswith("photon_maps: ") for line in lines) == 2
+    with_wall, without = passes[f"{first.name}.Combined"], passes["Second.Combined"]
+    assert with_wall[..., 0].mean() > with_wall[..., 1].mean() * 1.01  # red from the wall
+    np.testing.assert_allclose(without[..., 0], without[..., 1], rtol=1e-4)
+
+
+def test_a_material_override_holds_for_the_layer(corner):
+    corner.view_layers[0].material_override = material("Black", (0.0, 0.0, 0.0))
+    assert not render(corner)["Combined"][..., :3].any()
+
+
+def test_twice_the_same_picture(corner):
+    corner.photon_maps.passes = 4
+    first = render(corner)["Combined"]
+    corner.render.threads = 1
+    np.testing.assert_array_equal(render(corner)["Combined"], first)
+    corner.photon_maps.seed = 7
+    assert (render(corner)["Combined"] != first).any()
+
+
+def test_a_picture_can_be_shared_out_by_its_passes(corner):
+    settings = corner.photon_maps
+    settings.use_auto, settings.radius, settings.photon_count = False, 0.1, 2000
+    settings.passes = 6
+    whole = render(corner)["Combined"]
+    settings.passes, settings.pass_offset = 2, 0
+    first = render(corner)["Combined"]
+    settings.passes, settings.pass_offset = 4, 2
+    second = render(corner)["Combined"]
+    np.testing.assert_allclose((2 * first + 4 * second) / 6, whole, rtol=1e-4, atol=1e-6)
+
+
+def test_a_time_limit_ends_the_render_after_a_pass(corner):
+    corner.photon_maps.stop, corner.photon_maps.time_limit = "TIME", 0.001
+    assert render_with_summary(corner)[1]["passes"] == 1
+    corner.photon_maps.time_limit = 1.0
+    summary = render_with_summary(corner)[1]
+    assert summary["passes"] > 1
+
+
+def test_esc_keeps_the_passes_done(corner, watch):
+    corner.photon_maps.passes = 2
+    expected = render(corner)["Combined"]
+    corner.photon_maps.passes = 1_000_000
+    corner.photon_maps.use_auto = False
+    corner.photon_maps.photon_count = 1000
+    engines = watch(lambda engine: len(engine.polls) > 20)
+    passes, summary = render_with_summary(corner)
+    assert 1 <= summary["passes"] < 1_000_000
+    assert passes["Combined"].shape == expected.shape and passes["Combined"][..., :3].max() > 0.0
+    assert len(engines) == 1
+
+
+def test_esc_before_the_first_pass_is_said(corner, watch):
+    watch(lambda engine: True)
+    passes, summary = render_with_summary(corner)
+    assert summary["passes"] == 0 and not passes["Combined"][..., :3].any()
+    assert any("cancelled" in line for line in summary["messages"])
+
+
+def test_esc_cancels_a_running_pass(corner, watch):
+    """A pass of half a billion photons would run for minutes."""
+    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
+    corner.photon_maps.radius = 0.1
+    engines = watch(lambda engine: len(engine.polls) > 5)
+    _, summary = render_with_summary(corner)
+    assert summary["passes"] == 0 and len(engines[0].polls) > 5
+
+
+def test_esc_is_looked_for_all_the_time(corner, watch):
+    """By the number of looks, not by a clock: one pass of a second means dozens of them."""
+    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
+    engines = watch(lambda engine: len(engine.polls) > 1 and engine.polls[-1] - engine.polls[0] > 1.0)
+    render_with_summary(corner)
+    assert len(engines[0].polls) > 20
+
+
+def test_a_failing_helper_is_reported(corner, monkeypatch):
+    from bl_ext.user_default.photon_maps.engine.session import Session
+    from photon_maps_native import NativeError, Status
+
+    def fail(self):
+        raise NativeError(Status.INTERNAL_ERROR, "the array is upside down")
+
+    monkeypatch.setattr(Session, "step", fail)
+    with pytest.raises(RuntimeError, match="the array is upside down"):
+        bpy.ops.render.render()
+
+
+def test_a_defect_is_reported(corner, monkeypatch, capfd):
+    from bl_ext.user_default.photon_maps.engine.session import Session
+
+    def fail(self):
+        raise MemoryError("no room")
+
+    monkeypatch.setattr(Session, "step", fail)
+    with pytest.raises(RuntimeError, match="MemoryError: no room"):
+        bpy.ops.render.render()
+    assert "Traceback" in capfd.readouterr().err
+
+
+def test_a_missing_helper_is_reported(corner, monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "photon_maps_native", None)
+    with pytest.raises(RuntimeError, match="native helper cannot be loaded"):
+        bpy.ops.render.render()
+
+
+def test_no_camera_is_said(scene):
+    with pytest.raises(RuntimeError, match="no camera"):
+        bpy.ops.render.render()
+
+
+def test_a_scene_without_light_says_so(scene):
+    quad(scene, "Floor")
+    camera_above(scene)
+    passes, summary = render_with_summary(scene)
+    assert not passes["Combined"][..., :3].any()
+    assert any("no light" in line for line in summary["messages"])
+
+
+def test_a_scene_without_anything_says_so(scene):
+    camera_above(scene)
+    assert any("no light" in line for line in messages(scene))
+
+
+def test_messages_reach_the_panel(corner, extension):
+    from bl_ext.user_default.photon_maps.engine import last_render
+
+    link(corner, "Smoke", bpy.data.volumes.new("Smoke"))
+    lines = messages(corner)
+    kept = last_render.recall(corner.session_uid, corner.view_layers[0].name)
+    assert [str(message) for message in kept] == lines and any(line.startswith("Smoke") for line in lines)
+    bpy.data.objects.remove(bpy.data.objects["Smoke"])
+    assert messages(corner) == []
+    assert last_render.recall(corner.session_uid, corner.view_layers[0].name) == ()
+
+
+def test_an_animation_moves(corner, tmp_path):
+    wall = bpy.data.objects["Wall"]
+    for frame, x in ((1, -1.0), (3, 1.0)):
+        wall.location.x = x
+        wall.keyframe_insert("location", frame=frame)
+    corner.frame_start, corner.frame_end = 1, 3
+    corner.render.filepath = str(tmp_path / "frame_")
+    bpy.ops.render.render(animation=True)
+    frames = [read_exr(path)[0]["ViewLayer.Combined"] for path in sorted(tmp_path.glob("frame_*.exr"))]
+    assert len(frames) == 3
+    redness = [(frame[..., 0] - frame[..., 1]).clip(0.0) for frame in frames]
+    centres = [float((red * np.arange(32)).sum() / red.sum()) for red in redness]
+    assert centres[0] < centres[1] < centres[2]
+
+
+def test_cycles_is_as_it_was(corner):
+    """Both engines in one process: each has an Embree of its own."""
+    before = render_with_cycles(corner, samples=4, bounces=2)["Combined"]
+    first = render(corner)["Combined"]
+    np.testing.assert_array_equal(render_with_cycles(corner, samples=4, bounces=2)["Combined"], before)
+    np.testing.assert_array_equal(render(corner)["Combined"], first)

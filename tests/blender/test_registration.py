@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The extension comes and goes without a trace, and its properties are what scripts rely on."""
+
+from __future__ import annotations
+
+import importlib.util
+import tomllib
+from pathlib import Path
+
+import bpy
+import pytest
+
+MANIFEST = tomllib.loads((Path(__file__).resolve().parents[2] / "blender_manifest.toml").read_text())
+
+
+def traces():
+    """Return all that the extension may leave in Blender."""
+    panels = [
+        panel for panel in bpy.types.Panel.__subclasses__() if "PHOTON_MAPS" in getattr(panel, "COMPAT_ENGINES", ())
+    ]
+    return {
+        "compatible": {panel.__name__ for panel in panels if panel.is_registered},
+        "engines": {
+            getattr(engine, "bl_idname", "")
+            for engine in bpy.types.RenderEngine.__subclasses__()
+            if engine.is_registered
+        },
+        "scene": hasattr(bpy.types.Scene, "photon_maps"),
+        "view_layer": hasattr(bpy.types.ViewLayer, "photon_maps"),
+        "types": {name for name in dir(bpy.types) if name.startswith(("PHOTON_MAPS", "PhotonMaps"))},
+    }
+
+
+def test_register_and_unregister_leave_nothing(extension):
+    there = traces()
+    assert "PHOTON_MAPS" in there["engines"] and there["scene"] and there["view_layer"] and len(there["types"]) > 5
+    for _ in range(3):
+        extension.unregister()
+        gone = traces()
+        assert not any((gone["compatible"], gone["scene"], gone["view_layer"], gone["types"]))
+        assert "PHOTON_MAPS" not in gone["engines"]
+        extension.register()
+        assert traces() == there
+
+
+def test_blenders_own_panels_are_shown(extension):
+    compatible = traces()["compatible"]
+    assert {
+        "RENDER_PT_output",
+        "DATA_PT_lens",
+        "EEVEE_MATERIAL_PT_context_material",
+        "DATA_PT_EEVEE_light",
+    } <= compatible
+    assert not any(name.startswith("CYCLES") for name in compatible)
+
+
+def test_names_that_do_not_change(scene, extension):
+    settings = scene.photon_maps
+    numbered = {
+        "integrator": ["PHOTON_MAP", "PATH_TRACING"],
+        "filter": ["NONE", "CONE", "GAUSSIAN", "EPANECHNIKOV"],
+        "stop": ["PASSES", "TIME"],
+        "pixel_filter": ["BOX", "GAUSSIAN", "BLACKMAN_HARRIS"],
+    }
+    for name, identifiers in numbered.items():
+        items = settings.bl_rna.properties[name].enum_items
+        assert [(item.identifier, item.value) for item in items] == [
+            (one, number) for number, one in enumerate(identifiers)
+        ]
+    others = "use_auto photon_count estimate radius cone_k max_bounces seed passes time_limit use_progressive "
+    for name in (others + "pixel_filter_width pass_offset").split():
+        assert hasattr(settings, name)
+    assert MANIFEST["version"] == extension.engine.summary.VERSION
+    assert extension.engine.render_engine.PhotonMapsEngine.bl_label == MANIFEST["name"]
+
+
+@pytest.mark.parametrize("group", ["PhotonMapsSceneSettings", "PhotonMapsViewLayerSettings"])
+def test_every_tooltip_speaks_of_cost(extension, group):
+    properties = getattr(extension.engine.properties, group).bl_rna.properties
+    for name in set(properties.keys()) - {"rna_type", "name", "stop", "estimate"}:
+        text = properties[name].description.lower()
+        words = ("speed", "fast", "slow", "time", "tuning")
+        assert any(word in text for word in words), f"{name}: {text}"
+
+
+def test_automatic_leaves_the_choice_to_the_engine(scene, extension):
+    make, settings = extension.engine.properties.render_settings, scene.photon_maps
+    filters = extension.engine.settings.Filter
+    settings.photon_count, settings.radius, settings.filter, settings.cone_k = 1000, 0.25, "CONE", 2.0
+    automatic = make(scene)
+    assert (automatic.photon_count, automatic.radius, automatic.filter) == (0, 0.0, filters.EPANECHNIKOV)
+    settings.use_auto = False
+    by_hand = make(scene)
+    assert (by_hand.photon_count, by_hand.radius, by_hand.filter, by_hand.cone_k) == (1000, 0.25, filters.CONE, 2.0)
+
+
+def test_threads_and_stop_are_blenders(scene, extension):
+    make = extension.engine.properties.render_settings
+    scene.render.threads_mode, scene.render.threads = "FIXED", 3
+    scene.photon_maps.stop, scene.photon_maps.time_limit = "TIME", 0.25
+    made = make(scene)
+    assert (made.threads, made.stop.name, made.time_limit) == (3, "TIME", 0.25)
+    scene.render.threads_mode = "AUTO"
+    assert make(scene).threads == 0
+
+
+class Layout:
+    """Stands for a layout and keeps what is drawn; background Blender draws no panels."""
+
+    def __init__(self):
+        self.texts, self.properties = [], []
+
+    def column(self, **_):
+        return self
+
+    box = column
+
+    def label(self, text="", **_):
+        self.texts.append(text)
+
+    def prop(self, data, name, **_):
+        assert hasattr(data, name), name
+        self.properties.append(name)
+
+    def template_node_view(self, *_):
+        self.texts.append("nodes")
+
+
+def drawn(extension, name):
+    """Draw a panel in the context of the open scene."""
+    panel = type("Panel", (getattr(extension.ui.panels, name),), {"layout": None})
+    panel = object.__new__(type("Drawn", (), {"layout": Layout(), "column": panel.column, "draw": panel.draw}))
+    panel.draw(bpy.context)
+    return panel.layout
+
+
+def test_a_missing_helper_is_said_in_the_panel(scene, extension, monkeypatch):
+    assert not drawn(extension, "PHOTON_MAPS_PT_method").texts
+    monkeypatch.setattr(extension.ui.panels, "find_spec", lambda name: None)
+    assert "helper is missing" in drawn(extension, "PHOTON_MAPS_PT_method").texts[0]
+    assert importlib.util.find_spec(extension.ui.panels.HELPER)
+
+
+def test_panels_show_what_there_is(scene, extension):
+    assert "passes" in drawn(extension, "PHOTON_MAPS_PT_stop").properties
+    scene.photon_maps.stop = "TIME"
+    assert "time_limit" in drawn(extension, "PHOTON_MAPS_PT_stop").properties
+    shown = drawn(extension, "PHOTON_MAPS_PT_passes").properties
+    assert len(shown) == len(set(shown)) and {"use_pass_z", "use_pass_direct", "use_pass_denoising"} <= set(shown)
+    assert "radius" in drawn(extension, "PHOTON_MAPS_PT_photons").properties

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine's own panels."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+import bpy
+
+from ..engine import last_render
+from ..engine.passes import PASSES
+from ..engine.render_engine import PhotonMapsEngine
+
+HELPER = "photon_maps_native"
+
+
+class _Panel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {PhotonMapsEngine.bl_idname}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.engine in cls.COMPAT_ENGINES
+
+    def column(self) -> bpy.types.UILayout:
+        """Return the panel's layout as Blender's own render panels have it."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class PHOTON_MAPS_PT_method(_Panel, bpy.types.Panel):
+    bl_label = "Photon Maps"
+    bl_context = "render"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.photon_maps
+        column = self.column()
+        if find_spec(HELPER) is None:
+            box = column.box().column()
+            box.alert = True
+            box.label(text="The native helper is missing.", icon="ERROR")
+            box.label(text="Install the extension again from its zip.")
+        column.prop(settings, "integrator")
+        column.prop(settings, "max_bounces")
+        column.prop(settings, "seed")
+
+
+class PHOTON_MAPS_PT_photons(_Panel, bpy.types.Panel):
+    bl_label = "Photons"
+    bl_context = "render"
+    bl_parent_id = "PHOTON_MAPS_PT_method"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.scene.photon_maps.integrator == "PHOTON_MAP"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.photon_maps
+        column = self.column()
+        column.prop(settings, "use_progressive")
+        column.prop(settings, "use_auto")
+        by_hand = column.column()
+        by_hand.active = not settings.use_auto
+        by_hand.prop(settings, "photon_count")
+        by_hand.prop(settings, "radius")
+        by_hand.prop(settings, "filter")
+        cone = by_hand.column()
+        cone.active = settings.filter == "CONE"
+        cone.prop(settings, "cone_k")
+
+
+class PHOTON_MAPS_PT_stop(_Panel, bpy.types.Panel):
+    bl_label = "Stop"
+    bl_context = "render"
+    bl_parent_id = "PHOTON_MAPS_PT_method"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.photon_maps
+        column = self.column()
+        column.prop(settings, "stop", expand=True)
+        column.prop(settings, "passes" if settings.stop == "PASSES" else "time_limit")
+        column.prop(settings, "pass_offset")
+
+
+class PHOTON_MAPS_PT_film(_Panel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.photon_maps
+        column = self.column()
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
+        column.prop(settings, "pixel_filter")
+        column.prop(settings, "pixel_filter_width")
+
+
+class PHOTON_MAPS_PT_performance(_Panel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.prop(render, "threads_mode")
+        threads = column.column()
+        threads.active = render.threads_mode == "FIXED"
+        threads.prop(render, "threads")
+
+
+class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
+    bl_label = "Messages"
+    bl_context = "render"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        messages = last_render.recall(context.scene.session_uid, context.view_layer.name)
+        column = self.layout.column()
+        if not messages:
+            column.label(text="The last render has none.")
+        for message in messages:
+            box = column.box().column(align=True)
+            box.label(text=message.object, icon="INFO")
+            box.label(text=f"{message.text}{f' ({message.count} times)' if message.count > 1 else ''}")
+            if message.advice:
+                box.label(text=message.advice)
+
+
+class PHOTON_MAPS_PT_passes(_Panel, bpy.types.Panel):
+    bl_label = "Passes"
+    bl_context = "view_layer"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        for setting in dict.fromkeys(info.setting for info in PASSES if info.setting):
+            group, _, name = setting.rpartition(".")
+            column.prop(getattr(context.view_layer, group) if group else context.view_layer, name)
+
+
+class PHOTON_MAPS_PT_surface(_Panel, bpy.types.Panel):
+    bl_label = "Surface"
+    bl_context = "material"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.material is not None and not context.material.grease_pencil
+
+    def draw(self, context: bpy.types.Context) -> None:
+        tree = context.material.node_tree
+        output = tree.get_output_node("CYCLES") if tree else None
+        self.layout.use_property_split = True
+        if output is None:
+            self.layout.label(text="No output node")
+        else:
+            self.layout.template_node_view(tree, output, output.inputs["Surface"])
+
+
+class PHOTON_MAPS_PT_beam(_Panel, bpy.types.Panel):
+    bl_label = "Beam Shape"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.light is not None and context.light.type == "AREA"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.light, "spread")
+
+
+class PHOTON_MAPS_PT_ray_visibility(_Panel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.object is not None and context.object.type == "LIGHT"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.object, "visible_camera", text="Camera")
+
+
+CLASSES = (
+    PHOTON_MAPS_PT_method,
+    PHOTON_MAPS_PT_photons,
+    PHOTON_MAPS_PT_stop,
+    PHOTON_MAPS_PT_film,
+    PHOTON_MAPS_PT_performance,
+    PHOTON_MAPS_PT_messages,
+    PHOTON_MAPS_PT_passes,
+    PHOTON_MAPS_PT_surface,
+    PHOTON_MAPS_PT_beam,
+    PHOTON_MAPS_PT_ray_visibility,
+)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
