@@ -68,7 +68,9 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
         engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
 
     engine.update_stats("", "Reading the scene")
-    scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages)
+    scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages, engine.test_break)
+    if scene is None:
+        return
     settings = render_settings(depsgraph.scene_eval)
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
         picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)

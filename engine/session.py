@@ -18,7 +18,9 @@ class Session:
     Use as a context manager, or call close(); rendering in one thread and cancel() from another is allowed.
     """
 
-    def __init__(self, scene: SceneData, settings: RenderSettings, buffers: frozenset[Pass] = frozenset({Pass.COMBINED})):
+    def __init__(
+        self, scene: SceneData, settings: RenderSettings, buffers: frozenset[Pass] = frozenset({Pass.COMBINED})
+    ):
         """Copy the scene into the helper and build its acceleration structure.
 
         :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.

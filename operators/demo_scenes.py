@@ -14,12 +14,12 @@ GREEN = (0.12, 0.42, 0.14)
 BLUE = (0.10, 0.20, 0.55)
 GOLD = (0.75, 0.48, 0.12)
 
-#: Half width, half depth and height of the room in metres.
-HALF_WIDTH, HALF_DEPTH, HEIGHT = 2.0, 2.0, 3.0
+#: Half the width, the depth before and behind the middle, and the height of the room in metres.
+HALF_WIDTH, FRONT, BACK, HEIGHT = 2.0, 5.6, 2.0, 3.0
 
 
 def room() -> bpy.types.Scene:
-    """Build a white room with a red and a green wall, lit by one lamp and by the sun through a window."""
+    """Build a white room with a red and a green wall, lit by a lamp, and by sun and sky through a window."""
     scene = bpy.context.scene
     scene.name = "Room"
     materials = {name: _diffuse(name, color) for name, color in _COLORS.items()}
@@ -40,7 +40,8 @@ _COLORS = {"White": WHITE, "Red wall": RED, "Green wall": GREEN, "Blue": BLUE, "
 
 def _diffuse(name: str, color: tuple[float, float, float]) -> bpy.types.Material:
     material = bpy.data.materials.new(name)
-    _use_nodes(material)
+    if bpy.app.version < (5, 0, 0):  # later materials always use their nodes, and to say so is deprecated
+        material.use_nodes = True
     material.diffuse_color = (*color, 1.0)
     tree = material.node_tree
     tree.nodes.clear()
@@ -49,11 +50,6 @@ def _diffuse(name: str, color: tuple[float, float, float]) -> bpy.types.Material
     diffuse.inputs["Color"].default_value = (*color, 1.0)
     tree.links.new(diffuse.outputs["BSDF"], output.inputs["Surface"])
     return material
-
-
-def _use_nodes(owner: bpy.types.Material | bpy.types.World) -> None:
-    if bpy.app.version < (5, 0, 0):  # later they always do, and to say so is deprecated
-        owner.use_nodes = True
 
 
 def _link(scene: bpy.types.Scene, name: str, data: bpy.types.ID | None, *materials: bpy.types.Material):
@@ -65,16 +61,16 @@ def _link(scene: bpy.types.Scene, name: str, data: bpy.types.ID | None, *materia
 
 
 def _walls(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) -> None:
-    """Six walls seen from the open front; the right one has a window: four quads around a hole."""
-    w, d, h = HALF_WIDTH, HALF_DEPTH, HEIGHT
+    """A closed room around the camera; the right wall has a window: four quads around a hole."""
+    w, h = HALF_WIDTH, HEIGHT
     y0, y1, z0, z1 = -0.6, 0.7, 1.0, 2.4  # of the window
-    vertices = [(x, y, z) for x in (-w, w) for y in (-d, d) for z in (0.0, h)]
+    vertices = [(x, y, z) for x in (-w, w) for y in (-FRONT, BACK) for z in (0.0, h)]
     vertices += [(w, y, z) for y in (y0, y1) for z in (z0, z1)]
-    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (2, 6, 7, 3), (0, 2, 3, 1)]  # floor, ceiling, back, left
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (2, 6, 7, 3), (0, 1, 5, 4), (0, 2, 3, 1)]  # floor, ceiling, back, front, left
     faces += [(4, 8, 10, 6), (6, 10, 11, 7), (7, 11, 9, 5), (5, 9, 8, 4)]  # right
     mesh = bpy.data.meshes.new("Walls")
     mesh.from_pydata(vertices, [], faces)
-    mesh.polygons.foreach_set("material_index", [0, 0, 0, 1, 2, 2, 2, 2])
+    mesh.polygons.foreach_set("material_index", [0, 0, 0, 0, 1, 2, 2, 2, 2])
     _link(scene, "Walls", mesh, materials["White"], materials["Red wall"], materials["Green wall"])
 
 
@@ -85,7 +81,7 @@ def _text(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
     text.size, text.extrude, text.bevel_depth = 0.52, 0.06, 0.012
     thing = _link(scene, "Title", text, material)
     thing.matrix_world = (
-        Matrix.Translation((0.0, HALF_DEPTH - 0.12, 2.2)) @ Euler((math.pi / 2, 0.0, 0.0)).to_matrix().to_4x4()
+        Matrix.Translation((0.0, BACK - 0.12, 2.2)) @ Euler((math.pi / 2, 0.0, 0.0)).to_matrix().to_4x4()
     )
 
 
@@ -165,11 +161,13 @@ def _lights(scene: bpy.types.Scene) -> None:
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle, sun.color = 14.0, math.radians(0.6), (1.0, 0.93, 0.82)
     _link(scene, "Sun", sun).rotation_euler = Vector((1.0, 0.12, 0.62)).to_track_quat("Z", "Y").to_euler()
-    world = bpy.data.worlds.new("Sky")
-    _use_nodes(world)
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.35, 0.55, 0.9, 1.0)
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.25
-    scene.world = world
+    # The sky: a lamp as large as the window finds its way in, where most light of a world would not
+    sky = bpy.data.lights.new("Sky", "AREA")
+    sky.shape, sky.size, sky.size_y, sky.energy, sky.color = "RECTANGLE", 1.3, 1.4, 6.0, (0.45, 0.68, 1.0)
+    thing = _link(scene, "Sky", sky)
+    thing.location = (HALF_WIDTH + 0.02, 0.05, 1.7)
+    thing.rotation_euler = (math.pi / 2, 0.0, math.pi / 2)
+    thing.visible_camera = True
 
 
 def _camera(scene: bpy.types.Scene) -> None:

@@ -170,7 +170,7 @@ def test_photon_density_on_a_plane_is_the_formula(name: str, distance: float, sc
 def test_a_slanted_sun_lights_by_the_cosine() -> None:
     direction = np.array([3.0, 0.0, 4.0])  # cosine 0.8
     light = lamp(LightType.SUN, direction, (0, 0, 0), POWER)
-    data = scene([quad((0, 0, 0), (4, 0, 0), (0, 4, 0))], camera((0, -3, 3), (0, 0, 0), (4, 4)), lights=[light])
+    data = scene([quad((0, 0, 0), (4, 0, 0), (0, 4, 0))], camera((0, -3, 3), (0, 0, 0), (4, 4), 0.1), lights=[light])
     settings = box_filtered(radius=1.0, filter=Filter.NONE, photon_count=1 << 18, use_progressive=False)
     picture = Picture(data, replace(settings, max_bounces=1)).run(1)
     found = picture.photon_irradiance(DIRECT_PHOTONS, np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))

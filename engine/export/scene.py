@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import bpy
@@ -33,6 +34,8 @@ LEFT_OUT = {
 #: Ray visibility that diffuse surfaces would have to honour; the other flags speak of rays that are not there.
 VISIBILITY = {"visible_camera": "the camera", "visible_diffuse": "diffuse light", "visible_shadow": "shadow rays"}
 ROLES = {"is_holdout": "a holdout", "is_shadow_catcher": "a shadow catcher"}
+#: Instances between two looks at Esc.
+CANCEL_INTERVAL = 256
 
 
 @dataclass
@@ -43,7 +46,8 @@ class _Rows:
     messages: Messages
     override: bpy.types.Material | None  #: the view layer's material for everything
     meshes: list[Mesh] = field(default_factory=list)
-    indices: dict[int, int | None] = field(default_factory=dict)  #: of meshes, by the address of Blender's mesh
+    known: dict[int, tuple[int, int] | None] = field(default_factory=dict)  #: mesh and slots, by Blender's address
+    names: list[str] = field(default_factory=list)  #: of the objects, one an instance
     instance_meshes: list[int] = field(default_factory=list)
     transforms: list[Matrix] = field(default_factory=list)
     first_slots: list[int] = field(default_factory=list)
@@ -53,14 +57,23 @@ class _Rows:
     seen: set[str] = field(default_factory=set)  #: names of the objects whose flags have been looked at
 
 
-def read_scene(depsgraph: bpy.types.Depsgraph, camera: bpy.types.Object, messages: Messages) -> SceneData:
+def read_scene(
+    depsgraph: bpy.types.Depsgraph,
+    camera: bpy.types.Object,
+    messages: Messages,
+    is_cancelled: Callable[[], bool] = lambda: False,
+) -> SceneData | None:
     """Copy everything that is rendered; nothing points into Blender's memory afterwards.
 
     :param camera: the evaluated camera object.
+    :param is_cancelled: asked now and then.
+    :return: None if it was cancelled.
     """
     layer = depsgraph.view_layer_eval
     rows = _Rows(MaterialTable(messages), messages, layer.material_override)
-    for instance in depsgraph.object_instances:
+    for number, instance in enumerate(depsgraph.object_instances):
+        if number % CANCEL_INTERVAL == CANCEL_INTERVAL - 1 and is_cancelled():
+            return None
         # The object and its pointers are only good until the next instance: copy now.
         if instance.show_self:
             _add_object(rows, instance.object, instance.matrix_world)
@@ -91,17 +104,8 @@ def _add_object(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
     if object.type in LEFT_OUT:
         rows.messages.add(object.name, f"is {LEFT_OUT[object.type]}, which is not supported; it is left out.")
         return
-    if not _is_placed(matrix):
-        rows.messages.add(
-            object.name,
-            "has a position, rotation or scale that is not finite, or a scale of zero; it is left out.",
-            "Clear its transform.",
-        )
-        return
     if object.type == "LIGHT":
-        light = read_light(object, matrix, rows.messages)
-        if light is not None:
-            rows.lights.append(light)
+        _add_light(rows, object, matrix)
     elif object.type == "MESH":
         _add_mesh(rows, object, matrix)
     else:
@@ -110,35 +114,45 @@ def _add_object(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
     _name_flags(rows, object)
 
 
-def _is_placed(matrix: Matrix) -> bool:
-    values = [value for row in matrix for value in row]
-    # NaN makes the comparison false. A determinant of zero cannot be inverted, which instancing needs.
-    return all(abs(value) < COORDINATE_LIMIT for value in values) and matrix.to_3x3().determinant() != 0.0
+def _add_light(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+    if not _placed(np.array(matrix)[None], [object.name], rows.messages)[0]:
+        return
+    light = read_light(object, matrix, rows.messages)
+    if light is not None:
+        rows.lights.append(light)
 
 
 def _add_mesh(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
     key = object.data.as_pointer()  # objects that share their mesh, or its evaluated form, share the triangles
-    if key not in rows.indices:
-        if not object.data.polygons and not object.modifiers:  # modifiers may leave nothing on purpose
-            rows.messages.add(object.name, "has no faces, so there is nothing to render.")
-        mesh = read_mesh(object.data, object.name, rows.messages, object.original.type == "MESH")
-        rows.indices[key] = None if mesh is None else len(rows.meshes)
-        rows.meshes += [] if mesh is None else [mesh]
-    index = rows.indices[key]
-    if index is None:
+    if key not in rows.known:
+        rows.known[key] = _read_new_mesh(rows, object)
+    known = rows.known[key]
+    if known is None:
         return
+    index, slot_count = known
+    rows.names.append(object.name)
     rows.instance_meshes.append(index)
     rows.transforms.append(matrix.copy())
-    rows.first_slots.append(_first_slot(rows, object, rows.meshes[index]))
+    rows.first_slots.append(_first_slot(rows, object, slot_count))
 
 
-def _first_slot(rows: _Rows, object: bpy.types.Object, mesh: Mesh) -> int:
+def _read_new_mesh(rows: _Rows, object: bpy.types.Object) -> tuple[int, int] | None:
+    """Return the number of the mesh and how many slots its faces speak of, or None if it has nothing to render."""
+    if not object.data.polygons and not object.modifiers:  # modifiers may leave nothing on purpose
+        rows.messages.add(object.name, "has no faces, so there is nothing to render.")
+    mesh = read_mesh(object.data, object.name, rows.messages, object.original.type == "MESH")
+    if mesh is None:
+        return None
+    rows.meshes.append(mesh)
+    return len(rows.meshes) - 1, 1 if mesh.slots is None else int(mesh.slots.max()) + 1
+
+
+def _first_slot(rows: _Rows, object: bpy.types.Object, slot_count: int) -> int:
     """Return where the materials of an object's slots begin, adding them the first time."""
     # The evaluated slots hold an object's own materials as well as those that Geometry Nodes set.
     slots = [rows.materials.index(rows.override or slot.material) for slot in object.material_slots]
     slots = slots or [rows.materials.index(rows.override)]
-    needed = 1 if mesh.slots is None else int(mesh.slots.max()) + 1
-    slots += [slots[-1]] * (needed - len(slots))  # faces beyond the last slot have the last one's material
+    slots += [slots[-1]] * (slot_count - len(slots))  # faces beyond the last slot have the last one's material
     row = tuple(slots)
     if row not in rows.slot_rows:
         rows.slot_rows[row] = len(rows.slot_materials)
@@ -147,13 +161,28 @@ def _first_slot(rows: _Rows, object: bpy.types.Object, mesh: Mesh) -> int:
 
 
 def _instances(rows: _Rows) -> Instances:
-    transforms = np.array([matrix[:3] for matrix in rows.transforms], dtype=np.float32)
+    matrices = np.array(rows.transforms, dtype=np.float64).reshape(-1, 4, 4)
+    keep = _placed(matrices, rows.names, rows.messages)
     return Instances(
-        meshes=np.array(rows.instance_meshes, dtype=np.uint32),
-        transforms=transforms.reshape(-1, 3, 4),
-        first_slots=np.array(rows.first_slots, dtype=np.uint32),
+        meshes=np.array(rows.instance_meshes, dtype=np.uint32)[keep],
+        transforms=matrices[keep, :3].astype(np.float32),
+        first_slots=np.array(rows.first_slots, dtype=np.uint32)[keep],
         slot_materials=np.array(rows.slot_materials, dtype=np.uint32),
     )
+
+
+def _placed(matrices: np.ndarray, names: Sequence[str], messages: Messages) -> np.ndarray:
+    """Return which of the (N, 4, 4) matrices place an object somewhere, and name the others."""
+    # NaN makes the comparison false. A determinant of zero cannot be inverted, which instancing needs.
+    finite = (np.abs(matrices) < COORDINATE_LIMIT).all(axis=(1, 2))
+    placed = finite & (np.linalg.det(np.where(finite[:, None, None], matrices, 0.0)[:, :3, :3]) != 0.0)
+    for index in np.flatnonzero(~placed):
+        messages.add(
+            names[index],
+            "has a position, rotation or scale that is not finite, or a scale of zero; it is left out.",
+            "Clear its transform.",
+        )
+    return placed
 
 
 def _name_flags(rows: _Rows, object: bpy.types.Object) -> None:

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 import pytest
@@ -26,7 +28,10 @@ def extension():
     """The installed and enabled extension; disabled at the end, for Blender may not exit with its engine registered."""
     zips = sorted((ROOT / "dist").glob("photon_maps-*-linux-x64.zip"))
     assert zips, "run `make package` first"
-    bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(zips[-1]), enable_on_install=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResourceWarning)  # the installer of Blender 4.2 leaves a pipe open
+        bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(zips[-1]), enable_on_install=True)
+        gc.collect()
     yield sys.modules[MODULE]
     bpy.ops.preferences.addon_disable(module=MODULE)
     shutil.rmtree(RESOURCES)

@@ -56,11 +56,7 @@ typedef enum pm_filter {
     PM_FILTER_EPANECHNIKOV = 3
 } pm_filter;
 
-typedef enum pm_pixel_filter {
-    PM_PIXEL_BOX = 0,
-    PM_PIXEL_GAUSSIAN = 1,
-    PM_PIXEL_BLACKMAN_HARRIS = 2
-} pm_pixel_filter;
+typedef enum pm_pixel_filter { PM_PIXEL_BOX = 0, PM_PIXEL_GAUSSIAN = 1, PM_PIXEL_BLACKMAN_HARRIS = 2 } pm_pixel_filter;
 
 /* What can be read back; each is the mean over the finished passes. */
 typedef enum pm_pass {
@@ -128,10 +124,10 @@ typedef struct pm_light {
 
 typedef struct pm_camera {
     uint32_t struct_size;
-    uint32_t type;         /* pm_camera_type */
-    float transform[12];   /* camera to world, rigid; the camera looks along its local -z, y up */
-    float window[4];       /* left, right, bottom, top of the whole frame on the plane z = -1
-                              (perspective) or in scene units (orthographic) */
+    uint32_t type;          /* pm_camera_type */
+    float transform[12];    /* camera to world, rigid; the camera looks along its local -z, y up */
+    float window[4];        /* left, right, bottom, top of the whole frame on the plane z = -1
+                               (perspective) or in scene units (orthographic) */
     uint32_t resolution[2]; /* of the whole frame */
     uint32_t region[4];     /* x, y, width, height of what is rendered; y counts from the bottom */
     float clip_start;       /* along the view direction */
@@ -140,7 +136,7 @@ typedef struct pm_camera {
 
 typedef struct pm_settings {
     uint32_t struct_size;
-    uint32_t integrator; /* pm_integrator */
+    uint32_t integrator;   /* pm_integrator */
     uint64_t photon_count; /* emitted per pass; 0: chosen from the picture's pixels */
     float radius;          /* of the first pass, in scene units; 0: chosen from the density of pilot photons */
     uint32_t filter;       /* pm_filter */
@@ -151,13 +147,13 @@ typedef struct pm_settings {
     uint32_t pixel_filter;    /* pm_pixel_filter */
     float pixel_filter_width; /* full width in pixels */
     uint32_t film_transparent;
-    uint32_t threads;      /* 0: one for every core */
-    uint32_t passes;       /* bit 1 << pm_pass for each pass that will be read */
+    uint32_t threads; /* 0: one for every core */
+    uint32_t passes;  /* bit 1 << pm_pass for each pass that will be read */
 } pm_settings;
 
 typedef struct pm_statistics {
     uint32_t struct_size;
-    uint32_t passes; /* finished */
+    uint32_t passes;       /* finished */
     uint64_t photon_count; /* emitted per pass, as chosen */
     uint64_t photons_emitted;
     uint64_t photons_stored;
@@ -168,7 +164,7 @@ typedef struct pm_statistics {
     double emitted[3]; /* W, mean over the passes: emitted = absorbed + escaped + cut */
     double absorbed[3];
     double escaped[3];
-    double cut[3]; /* carried by photons that reached max_bounces */
+    double cut[3];        /* carried by photons that reached max_bounces */
     double seconds_trace; /* wall time by phase */
     double seconds_build;
     double seconds_gather;

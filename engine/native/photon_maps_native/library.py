@@ -151,7 +151,9 @@ def shaped(array: np.ndarray, dtype: type, shape: tuple[int | None, ...], name: 
     :raises NativeError: if the shape differs.
     """
     result = np.ascontiguousarray(array, dtype)
-    fits = result.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, result.shape, strict=True))
+    fits = result.ndim == len(shape) and all(
+        want in (None, have) for want, have in zip(shape, result.shape, strict=True)
+    )
     if not fits:
         raise NativeError(Status.INVALID_ARGUMENT, f"{name} has shape {result.shape}, expected {shape}")
     return result

@@ -329,8 +329,8 @@ pm_status pm_render_read(const pm_render *render, uint32_t pass, float *pixels, 
         const auto buffer = static_cast<pm::Buffer>(pass);
         const pm::Film &film = render->render.film();
         if (!film.has(buffer)) throw InvalidOperation("pass " + std::to_string(pass) + " was not asked for");
-        pm::require(count == film.size(buffer), "the pass has " + std::to_string(film.size(buffer)) +
-                                                    " floats, not " + std::to_string(count));
+        pm::require(count == film.size(buffer),
+                    "the pass has " + std::to_string(film.size(buffer)) + " floats, not " + std::to_string(count));
         film.read(buffer, {pixels, count});
     });
 }

@@ -17,17 +17,45 @@ float power_heuristic(float pdf, float other_pdf) {
     return 1 / (1 + ratio * ratio);
 }
 
-/// Light that a point receives straight from the lights and sends on: one light sample.
-Vec3 sample_lights(const CameraPass &pass, const SurfacePoint &hit, const std::array<float, 4> &u, uint64_t &rays) {
-    const auto light = pass.lights.sample(hit.position, hit.shading_normal, {u[0], u[1], u[2]});
+/// What the eye sees first asks every source while they are few: choosing among them costs more in noise than the
+/// rays saved are worth.
+constexpr size_t few_sources = 8;
+
+bool asks_every_source(const CameraPass &pass, uint32_t vertex) {
+    return vertex == 0 && pass.lights.source_count() <= few_sources;
+}
+
+/// Light that a point receives from one source and sends on.
+Vec3 sample_source(const CameraPass &pass, const SurfacePoint &hit, const Lights::Choice &choice,
+                   const std::array<float, 4> &u, uint64_t &rays) {
+    const std::optional<LightSample> light =
+        pass.lights.sample(choice.source, hit.position, hit.shading_normal, {u[0], u[1], choice.left});
     if (!light) return {};
     const float cosine = dot(light->direction, hit.shading_normal);
     if (cosine <= 0 || dot(light->direction, hit.normal) <= 0) return {};
     ++rays;
     if (pass.scene.occluded({hit.origin_above(), light->direction, 0, light->distance})) return {};
     // Emissive triangles can also be met by closure sampling, whose density is cosine / pi.
-    const float weight = light->pdf > 0 ? power_heuristic(light->pdf, cosine / pi) : 1;
-    return hit.material->albedo * light->radiance * (cosine / pi * weight);
+    const float weight = light->pdf > 0 ? power_heuristic(light->pdf * choice.probability, cosine / pi) : 1;
+    return hit.material->albedo * light->radiance * (cosine / pi * weight / choice.probability);
+}
+
+/// Light that a point receives straight from the lights and sends on.
+Vec3 sample_lights(const CameraPass &pass, const SurfacePoint &hit, uint32_t vertex, Sequence &sequence,
+                   uint64_t &rays) {
+    Vec3 received;
+    if (asks_every_source(pass, vertex)) {
+        for (size_t source = 0; source < pass.lights.source_count(); ++source) {
+            if (!pass.lights.shines(source)) continue;
+            const auto u = sequence.next();
+            received += sample_source(pass, hit, {source, 1, u[2]}, u, rays);
+        }
+    } else {
+        const auto u = sequence.next();
+        if (const auto choice = pass.lights.choose(hit.position, u[2]))
+            received = sample_source(pass, hit, *choice, u, rays);
+    }
+    return received;
 }
 
 /// One camera path from its first surface on. `throughput` starts at 1; light found at vertex 0 is direct.
@@ -38,7 +66,7 @@ void trace_path(const CameraPass &pass, SurfacePoint hit, Sequence &sequence, Pi
         Vec3 &received = vertex == 0 ? sample.direct : sample.indirect;
 
         // Direct light at this vertex by sampling the lights.
-        if (!pass.lights.empty()) received += throughput * sample_lights(pass, hit, sequence.next(), rays);
+        if (!pass.lights.empty()) received += throughput * sample_lights(pass, hit, vertex, sequence, rays);
 
         // A direction by the closure: it may meet an emissive surface, and is where the path goes on.
         if (vertex == last_vertex && !pass.lights.has_emissive_triangles()) return;
@@ -52,7 +80,8 @@ void trace_path(const CameraPass &pass, SurfacePoint hit, Sequence &sequence, Pi
         if (!pass.scene.intersect({hit.origin_above(), direction}, next)) return;
         if (next.material->emits()) {
             const float pdf = dot(direction, hit.shading_normal) / pi;
-            const float weight = power_heuristic(pdf, pass.lights.pdf(hit.position, next));
+            const float choice = asks_every_source(pass, vertex) ? 1 : pass.lights.triangles_probability(hit.position);
+            const float weight = power_heuristic(pdf, choice * pass.lights.pdf(hit.position, next));
             received += throughput * next.material->emission * weight;
         }
         if (vertex == last_vertex) return;

@@ -80,7 +80,8 @@ void add_barrier(Vec2<double> a, Vec2<double> b, double tolerance, std::vector<B
     const double reach = std::sqrt(1 - distance * distance);
     from = std::max(from, -reach);
     to = std::min(to, reach);
-    if (!(from < to)) return;
+    // Nothing is left, or next to nothing, of which single precision would not keep the direction.
+    if (!(to - from > 1e-6 * (distance + std::max(std::abs(from), std::abs(to))))) return;
     const Vec2<double> foot{along.y * distance, -along.x * distance};
     const Vec2<double> start = foot + along * from, end = foot + along * to;
     barriers.push_back({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(end.x),

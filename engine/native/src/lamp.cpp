@@ -24,9 +24,7 @@ Vec3 sun_radiance(const Lamp &lamp) {
 
 bool is_area(const Lamp &lamp) { return lamp.type == LightType::rectangle || lamp.type == LightType::ellipse; }
 
-float area(const Lamp &lamp) {
-    return lamp.width * lamp.height * (lamp.type == LightType::ellipse ? pi / 4 : 1.0f);
-}
+float area(const Lamp &lamp) { return lamp.width * lamp.height * (lamp.type == LightType::ellipse ? pi / 4 : 1.0f); }
 
 /// Share of a spot's intensity in a unit direction of travel: a smooth step in the cosine over `spot_blend` of the
 /// cone, as Blender draws it. Non-uniform scale of the lamp stretches the cone.
@@ -146,8 +144,7 @@ PhotonEmission emit_from_point(const Lamp &lamp, const std::array<float, 4> &u) 
 PhotonEmission emit_from_area(const Lamp &lamp, const std::array<float, 4> &u) {
     const Vec3 x = normalize(lamp.transform.x), y = normalize(lamp.transform.y), z = normalize(lamp.transform.z);
     const Vec2 p = lamp.type == LightType::ellipse ? sample_disk(u[2], u[3]) : Vec2{2 * u[2] - 1, 2 * u[3] - 1};
-    const Vec3 origin =
-        lamp.transform.origin + x * (p.x * lamp.width / 2) + y * (p.y * lamp.height / 2);
+    const Vec3 origin = lamp.transform.origin + x * (p.x * lamp.width / 2) + y * (p.y * lamp.height / 2);
 
     // Cosine-distributed within the spread; what varies in the radiance goes into the flux.
     const float sine = lamp.spread >= pi ? 1 : std::sin(lamp.spread / 2);

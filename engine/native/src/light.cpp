@@ -8,6 +8,8 @@ namespace photon_maps {
 
 namespace {
 
+constexpr float below_one = 0x1.fffffep-1f;
+
 float area(const WorldTriangle &t) { return length(cross(t.b - t.a, t.c - t.a)) / 2; }
 
 /// A point of a triangle, uniform by area.
@@ -69,40 +71,32 @@ float Lights::total_importance(Vec3 position) const {
     return total;
 }
 
-std::optional<LightSample> Lights::sample(Vec3 position, Vec3 shading_normal, const std::array<float, 3> &u) const {
-    // Choose a source; what is left of the random number is uniform again.
+std::optional<Lights::Choice> Lights::choose(Vec3 position, float u) const {
     const float total = total_importance(position);
     if (!(total > 0)) return {};
-    float left = u[2] * total;
-    size_t chosen = 0;
-    float weight = 0;
+    Choice choice{0, 0, u * total};
     for (size_t s = 0; s < source_count(); ++s) {
         const float own = importance(s, position);
         if (own <= 0) continue;
-        chosen = s;
-        weight = own;
-        if (left < own) break;
-        left -= own;
+        choice.source = s;
+        choice.probability = own;
+        if (choice.left < own) break;
+        choice.left -= own;
     }
-    const float probability = weight / total;
-    const float choice = std::min(left / weight, 0x1.fffffep-1f);
+    choice.left = std::min(choice.left / choice.probability, below_one);
+    choice.probability /= total;
+    return choice;
+}
 
-    std::optional<LightSample> sample;
-    if (chosen == world_source()) {
-        // By the cosine about the normal: for a uniform world no other density has less noise.
-        const Vec3 local = sample_cosine_hemisphere(u[0], u[1]);
-        if (local.z <= 0) return {};
-        sample = LightSample{Frame(shading_normal).to_world(local), std::numeric_limits<float>::infinity(),
-                             world_ * (pi / local.z), 0};
-    } else if (chosen == triangles_source()) {
-        sample = sample_triangles(position, choice, u[0], u[1]);
-    } else {
-        sample = sample_lamp(lamps_[chosen], position, u[0], u[1]);
-    }
-    if (!sample) return {};
-    sample->radiance = sample->radiance / probability;
-    sample->pdf *= probability;
-    return sample;
+std::optional<LightSample> Lights::sample(size_t source, Vec3 position, Vec3 shading_normal,
+                                          const std::array<float, 3> &u) const {
+    if (source == triangles_source()) return sample_triangles(position, u[2], u[0], u[1]);
+    if (source != world_source()) return sample_lamp(lamps_[source], position, u[0], u[1]);
+    // The world by the cosine about the normal: while it is uniform no other density has less noise.
+    const Vec3 local = sample_cosine_hemisphere(u[0], u[1]);
+    if (local.z <= 0) return {};
+    const Vec3 direction = Frame(shading_normal).to_world(local);
+    return LightSample{direction, std::numeric_limits<float>::infinity(), world_ * (pi / local.z), 0};
 }
 
 size_t Lights::choose_emitter(float choice) const {
@@ -131,8 +125,7 @@ float Lights::pdf(Vec3 position, const SurfacePoint &emitter) const {
     const Vec3 to = emitter.position - position;
     const float squared = length_squared(to);
     const float cosine = std::abs(dot(to, emitter.normal)) / std::sqrt(squared);
-    const float probability = importance(triangles_source(), position) / total_importance(position);
-    return probability * 2 * pi * average(emitter.material->emission) / triangle_power_ * squared / cosine;
+    return 2 * pi * average(emitter.material->emission) / triangle_power_ * squared / cosine;
 }
 
 std::optional<PhotonEmission> Lights::emit(Sequence &sequence) const {
@@ -151,7 +144,7 @@ std::optional<PhotonEmission> Lights::emit(Sequence &sequence) const {
     if (chosen == world_source()) {
         photon = emit_from_world(point);
     } else if (chosen == triangles_source()) {
-        photon = emit_from_triangle(std::min(left / power_[chosen], 0x1.fffffep-1f), choice[1], point);
+        photon = emit_from_triangle(std::min(left / power_[chosen], below_one), choice[1], point);
     } else {
         photon = emit_from_lamp(lamps_[chosen], sphere_of(scene_), point);
     }

@@ -29,10 +29,10 @@ struct Lamp {
 
 /// A direction towards a light, chosen with a known density.
 struct LightSample {
-    Vec3 direction;   ///< unit
-    float distance;   ///< up to where a shadow ray must be free
-    Vec3 radiance;    ///< arriving along the direction, divided by the density of the choice
-    float pdf;        ///< density by solid angle where closure sampling can meet the same light; else 0
+    Vec3 direction;  ///< unit
+    float distance;  ///< up to where a shadow ray must be free
+    Vec3 radiance;   ///< arriving along the direction, divided by the density of the choice
+    float pdf;       ///< density by solid angle where closure sampling can meet the same light; else 0
 };
 
 /// A photon as it leaves a light.
@@ -54,13 +54,33 @@ class Lights {
     Vec3 world() const { return world_; }
     bool has_emissive_triangles() const { return !triangles_.empty(); }
 
-    /// Chooses a light by the irradiance it might bring to the point, and a direction to it.
-    /// @return nothing where the chosen light cannot reach the side that `shading_normal` is on
-    std::optional<LightSample> sample(Vec3 position, Vec3 shading_normal, const std::array<float, 3> &u) const;
+    /// Lamps, all emissive triangles, the world: each is a source. Some may be dark.
+    size_t source_count() const { return lamps_.size() + 2; }
+    bool shines(size_t source) const { return power_[source] > 0; }
+
+    /// A source chosen by chance.
+    struct Choice {
+        size_t source;
+        float probability;
+        float left;  ///< what is left of the random number, uniform in [0, 1) again
+    };
+
+    /// Chooses a source by the irradiance that it might bring to the point.
+    std::optional<Choice> choose(Vec3 position, float u) const;
+
+    /// Chooses a direction to a source, by u[0] and u[1], of emissive triangles one by u[2].
+    /// @return nothing where the source cannot reach the side that `shading_normal` is on
+    std::optional<LightSample> sample(size_t source, Vec3 position, Vec3 shading_normal,
+                                      const std::array<float, 3> &u) const;
 
     /// Density by solid angle with which sample() chooses the direction from `position` to a point of an emissive
-    /// triangle.
+    /// triangle, once their source is chosen.
     float pdf(Vec3 position, const SurfacePoint &emitter) const;
+
+    /// Probability with which choose() takes the emissive triangles.
+    float triangles_probability(Vec3 position) const {
+        return importance(triangles_source(), position) / total_importance(position);
+    }
 
     /// Emits one photon: a light by its share of the power, then a point and direction by its radiance
     /// (Jensen 1996, section 4.1). Nothing if the lights have no power.
@@ -76,7 +96,6 @@ class Lights {
     };
 
     void find_emissive_triangles();
-    size_t source_count() const { return lamps_.size() + 2; }
     size_t triangles_source() const { return lamps_.size(); }
     size_t world_source() const { return lamps_.size() + 1; }
     float importance(size_t source, Vec3 position) const;

@@ -15,7 +15,9 @@ inline uint32_t pack_normal(Vec3 n, uint32_t payload) {
 }
 
 inline Vec3 unpack_normal(uint32_t packed) {
-    const auto component = [packed](int shift) { return static_cast<float>(static_cast<int8_t>(packed >> shift)) / 127; };
+    const auto component = [packed](int shift) {
+        return static_cast<float>(static_cast<int8_t>(packed >> shift)) / 127;
+    };
     return {component(0), component(8), component(16)};
 }
 

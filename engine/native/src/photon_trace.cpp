@@ -100,8 +100,7 @@ TracedPhotons trace_photons(const Scene &scene, const Lights &lights, const Phot
             Sequence sequence(tracing.first + i, tracing.seed);
             const std::optional<PhotonEmission> emission = lights.emit(sequence);
             if (!emission || !(max_component(emission->flux) > 0)) continue;
-            trace_photon(scene, *emission, sequence, static_cast<float>(tracing.count), tracing.max_bounces,
-                         chunks[c]);
+            trace_photon(scene, *emission, sequence, static_cast<float>(tracing.count), tracing.max_bounces, chunks[c]);
         }
     });
 

@@ -9,9 +9,18 @@ namespace photon_maps {
 namespace {
 
 rtc::Ray to_embree(const Ray &ray) {
-    return {ray.origin.x,    ray.origin.y,    ray.origin.z,    ray.near, ray.direction.x,
-            ray.direction.y, ray.direction.z, 0,               ray.far,  0xffffffffu,
-            0,               0};
+    return {ray.origin.x,
+            ray.origin.y,
+            ray.origin.z,
+            ray.near,
+            ray.direction.x,
+            ray.direction.y,
+            ray.direction.z,
+            0,
+            ray.far,
+            0xffffffffu,
+            0,
+            0};
 }
 
 }  // namespace
@@ -132,8 +141,8 @@ void Scene::build() {
             continue;
         }
         const Transform &t = instances[i].transform;
-        const float rows[12] = {t.x.x, t.y.x, t.z.x, t.origin.x, t.x.y, t.y.y,
-                                t.z.y, t.origin.y, t.x.z, t.y.z, t.z.z, t.origin.z};
+        const float rows[12] = {t.x.x, t.y.x,      t.z.x, t.origin.x, t.x.y, t.y.y,
+                                t.z.y, t.origin.y, t.x.z, t.y.z,      t.z.z, t.origin.z};
         const rtc::Geometry geometry = f.rtcNewGeometry(embree_->device(), rtc::GeometryType::instance);
         f.rtcSetGeometryInstancedScene(geometry, mesh_scenes_[instances[i].mesh].get());
         f.rtcSetGeometryTransform(geometry, 0, rtc::Format::float3x4_row_major, rows);

@@ -21,9 +21,9 @@ using Triangle = std::array<uint32_t, 3>;
 struct Mesh {
     std::vector<Vec3> vertices;  ///< with one more at the end than counted: Embree reads 16 bytes at each
     std::vector<Triangle> triangles;
-    std::vector<uint32_t> slots;        ///< material slot of each triangle; empty: all 0
+    std::vector<uint32_t> slots;       ///< material slot of each triangle; empty: all 0
     std::vector<Vec3> corner_normals;  ///< three a triangle; empty: flat
-    uint32_t use_count = 0;             ///< instances that show it
+    uint32_t use_count = 0;            ///< instances that show it
 
     size_t vertex_count() const { return vertices.size() - 1; }
 };

@@ -63,9 +63,9 @@ constexpr DimensionTable dimension_table(const Polynomial &polynomial) {
     return table;
 }
 
-constexpr std::array<DimensionTable, 4> sobol_tables = {
-    dimension_table({0, 0, {}}), dimension_table({1, 0, {1}}), dimension_table({2, 1, {1, 3}}),
-    dimension_table({3, 1, {1, 3, 1}})};
+constexpr std::array<DimensionTable, 4> sobol_tables = {dimension_table({0, 0, {}}), dimension_table({1, 0, {1}}),
+                                                        dimension_table({2, 1, {1, 3}}),
+                                                        dimension_table({3, 1, {1, 3, 1}})};
 
 }  // namespace
 

@@ -74,14 +74,19 @@ template <typename Work>
 }
 #endif
 
+template <typename Work>
+[[gnu::flatten]] auto with_any_processor(const Work &work) {
+    return work();
+}
+
 /// Returns work(), compiled for 256-bit vectors as well where processors differ, and chosen when it runs.
 /// @param work what it calls must be inlined
 template <typename Work>
-[[gnu::flatten]] auto vectorized(const Work &work) {
+auto vectorized(const Work &work) {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) return with_avx2(work);
 #endif
-    return work();
+    return with_any_processor(work);
 }
 
 }  // namespace photon_maps

@@ -18,12 +18,13 @@ void require_struct_size(size_t given, size_t expected, const char *name) {
 
 /// A finite number in [low, high].
 void require_range(float value, float low, float high, const std::string &name) {
-    require(value >= low && value <= high, name + " is " + std::to_string(value) + ", outside " + std::to_string(low) +
-                                               " to " + std::to_string(high));
+    require(value >= low && value <= high,
+            name + " is " + std::to_string(value) + ", outside " + std::to_string(low) + " to " + std::to_string(high));
 }
 
 void require_coordinates(std::span<const float> values, const std::string &name) {
-    const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !(std::abs(v) <= max_coordinate); });
+    const auto bad =
+        std::find_if(values.begin(), values.end(), [](float v) { return !(std::abs(v) <= max_coordinate); });
     if (bad == values.end()) return;
     throw InvalidArgument(name + ": number " + std::to_string(bad - values.begin()) + " is " + std::to_string(*bad) +
                           ", not finite or beyond 1e9");
@@ -65,9 +66,9 @@ void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slot
     require_indices({instances.slot_materials, instances.slot_material_count}, material_count, "slot_materials");
     for (size_t i = 0; i < count; ++i) {
         const size_t end = size_t{instances.first_slots[i]} + mesh_slots[instances.meshes[i]];
-        require(end <= instances.slot_material_count,
-                "instance " + std::to_string(i) + " needs " + std::to_string(end) + " entries of slot_materials, of " +
-                    std::to_string(instances.slot_material_count));
+        require(end <= instances.slot_material_count, "instance " + std::to_string(i) + " needs " +
+                                                          std::to_string(end) + " entries of slot_materials, of " +
+                                                          std::to_string(instances.slot_material_count));
     }
 }
 

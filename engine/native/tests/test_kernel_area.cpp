@@ -69,6 +69,7 @@ void check_random_shares(test::Checks &checks) {
     check_shares(checks, "through the disc", std::vector<Barrier>{{-5, -0.3f, 5, -0.3f}});
     check_shares(checks, "directed the other way", std::vector<Barrier>{{5, -0.3f, -5, -0.3f}});
     check_shares(checks, "short", std::vector<Barrier>{{0.2f, 0.1f, 0.25f, 0.3f}});
+    check_shares(checks, "a point", std::vector<Barrier>{{0.5f, 0.1f, 0.5f, 0.10000001f}, {0.2f, 0.2f, 0.2f, 0.2f}});
     check_shares(checks, "nearly touched", std::vector<Barrier>{{-2, 1e-4f, 2, 1e-4f}});
     check_shares(checks, "corner", std::vector<Barrier>{{-0.2f, -0.1f, 3, -0.1f}, {-0.2f, 3, -0.2f, -0.1f}});
     check_shares(checks, "reflex corner", std::vector<Barrier>{{-0.2f, -0.1f, 3, -0.1f}, {-0.2f, -3, -0.2f, -0.1f}});

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the helper does with garbage: an error code and a message that names it, never a crash."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from photon_maps_native import (
+    Device,
+    Instances,
+    LightType,
+    Material,
+    Mesh,
+    NativeError,
+    NativeRender,
+    NativeScene,
+    SceneData,
+    Status,
+    library,
+)
+from shapes import IDENTITY, Picture, box_filtered, camera, lamp, quad, scene
+
+from engine.passes import Pass
+from engine.settings import RenderSettings
+
+NAN, INFINITY = float("nan"), float("inf")
+
+
+def plain() -> SceneData:
+    """A floor under a lamp."""
+    light = lamp(LightType.RECTANGLE, (0, 0, 2), (0, 0, 0), 10.0, size=(1, 1))
+    return scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], camera((0, -3, 2), (0, 0, 0), (8, 8)), lights=[light])
+
+
+def with_vertex(value: float) -> SceneData:
+    data = plain()
+    data.meshes[0].vertices[2, 1] = value
+    return data
+
+
+def with_triangle(index: int) -> SceneData:
+    data = plain()
+    data.meshes[0].triangles[1, 1] = index
+    return data
+
+
+def with_light(**fields: object) -> SceneData:
+    data = plain()
+    return replace(data, lights=[replace(data.lights[0], **fields)])
+
+
+def with_camera(**fields: object) -> SceneData:
+    data = plain()
+    return replace(data, camera=replace(data.camera, **fields))
+
+
+def with_instances(**fields: object) -> SceneData:
+    data = plain()
+    return replace(data, instances=replace(data.instances, **fields))
+
+
+def with_material(material: Material) -> SceneData:
+    return replace(plain(), materials=[material])
+
+
+FAR = np.array([[5e8, 0, 0, 9e8], [0, 1, 0, 0], [0, 0, 1, 0]], np.float32)
+FLAT = np.zeros((3, 4), np.float32)
+
+BAD_SCENES: dict[str, tuple[Callable[[], SceneData], str]] = {
+    "vertex not a number": (lambda: with_vertex(NAN), "vertices"),
+    "vertex infinite": (lambda: with_vertex(INFINITY), "vertices"),
+    "vertex too far": (lambda: with_vertex(1e20), "vertices"),
+    "index beyond the vertices": (lambda: with_triangle(4), "triangles"),
+    "index of -1": (lambda: with_triangle(2**32 - 1), "triangles"),
+    "transform not a number": (
+        lambda: with_instances(transforms=np.full((1, 3, 4), NAN, np.float32)),
+        "transforms",
+    ),
+    "mesh that is not there": (lambda: with_instances(meshes=np.array([1], np.uint32)), "meshes"),
+    "slots beyond the table": (lambda: with_instances(first_slots=np.array([1], np.uint32)), "slot_materials"),
+    "material that is not there": (lambda: with_instances(slot_materials=np.array([7], np.uint32)), "slot_materials"),
+    "instance beyond all bounds": (
+        lambda: with_instances(transforms=FAR[None]),
+        "instance 0",
+    ),
+    "albedo above 1": (lambda: with_material(Material((0.5, 1.5, 0.5))), "material 0: albedo"),
+    "albedo below 0": (lambda: with_material(Material((-0.5, 0.5, 0.5))), "material 0: albedo"),
+    "emission not a number": (lambda: with_material(Material(emission=(NAN, 0, 0))), "material 0: emission"),
+    "negative power": (lambda: with_light(power=(-1.0, 0.0, 0.0)), "light 0: power"),
+    "infinite power": (lambda: with_light(power=(INFINITY, 0.0, 0.0)), "light 0: power"),
+    "area light without area": (lambda: with_light(size=(1.0, 0.0)), "light 0"),
+    "negative size": (lambda: with_light(size=(1.0, -1.0)), "light 0: size"),
+    "no spread": (lambda: with_light(spread=0.0), "light 0: spread"),
+    "unknown type": (lambda: with_light(type=17), "light 0: unknown type"),
+    "spot without angle": (lambda: with_light(type=LightType.SPOT), "light 0: spot_angle"),
+    "flattened lamp": (lambda: with_light(transform=FLAT), "light 0: transform"),
+    "world not a number": (lambda: replace(plain(), world=(0.0, NAN, 0.0)), "world"),
+    "empty window": (lambda: with_camera(window=(1.0, 1.0, 0.0, 1.0)), "camera: the window"),
+    "empty region": (lambda: with_camera(region=(0, 0, 0, 8)), "camera: the region"),
+    "region beyond the frame": (lambda: with_camera(region=(1, 0, 8, 8)), "camera: the region"),
+    "flattened camera": (lambda: with_camera(transform=FLAT), "camera: transform"),
+    "clip end before start": (lambda: with_camera(clip_start=2.0, clip_end=1.0), "camera: clip_end"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_SCENES)
+def test_a_bad_scene_is_refused_by_name(name: str) -> None:
+    make, message = BAD_SCENES[name]
+    with pytest.raises(NativeError, match=message) as caught:
+        Picture(make(), RenderSettings())
+    assert caught.value.status == Status.INVALID_ARGUMENT
+
+
+BAD_SETTINGS = {
+    "cone_k": {"cone_k": 0.99},
+    "radius": {"radius": -1.0},
+    "unknown integrator": {"integrator": 9},
+    "unknown filter": {"filter": 9},
+    "unknown pixel filter": {"pixel_filter": 9},
+    "pixel_filter_width": {"pixel_filter_width": 0.0},
+    "photon_count": {"photon_count": 2 * 10**9},
+    "max_bounces": {"max_bounces": 100_000},
+}
+
+
+@pytest.mark.parametrize("message", BAD_SETTINGS)
+def test_bad_settings_are_refused_by_name(message: str) -> None:
+    with pytest.raises(NativeError, match=message) as caught:
+        Picture(plain(), RenderSettings(**BAD_SETTINGS[message]))
+    assert caught.value.status == Status.INVALID_ARGUMENT
+
+
+def test_calls_out_of_order_are_refused() -> None:
+    device = Device()
+    scene_handle = NativeScene(device, plain())
+    with pytest.raises(NativeError, match="committed") as caught:
+        library.call("pm_scene_commit", scene_handle.handle)
+    assert caught.value.status == Status.INVALID_OPERATION
+
+    uncommitted = ctypes.c_void_p()
+    library.call("pm_scene_create", device.handle, ctypes.byref(uncommitted))
+    render = ctypes.c_void_p()
+    arguments = (library.to_camera(plain().camera), library.structs.PmSettings())
+    with pytest.raises(NativeError, match="not been committed") as caught:
+        library.call("pm_render_create", uncommitted, *map(ctypes.byref, arguments), ctypes.byref(render))
+    assert caught.value.status == Status.INVALID_OPERATION
+    library.load_library().pm_scene_release(uncommitted)
+
+
+def test_null_handles_and_pointers_are_refused() -> None:
+    null = ctypes.c_void_p()
+    device = Device()
+    calls = {
+        "pm_device_create": (None, None),
+        "pm_device_embree_version": (null, None),
+        "pm_scene_create": (device.handle, None),
+        "pm_scene_add_mesh": (null, None, None),
+        "pm_scene_set_instances": (null, None),
+        "pm_scene_set_materials": (null, None, 1),
+        "pm_scene_set_lights": (null, None, 1),
+        "pm_scene_set_world": (null, (ctypes.c_float * 3)()),
+        "pm_scene_commit": (null,),
+        "pm_render_create": (null, None, None, None),
+        "pm_render_pass": (null, 0),
+        "pm_render_cancel": (null,),
+        "pm_render_read": (null, 0, None, 0),
+        "pm_render_statistics": (null, None),
+        "pm_render_photon_count": (null, 0, None),
+        "pm_render_photons": (null, 0, 0, 0, None),
+        "pm_render_irradiance": (null, 0, 0, None, None, None),
+    }
+    for name, arguments in calls.items():
+        with pytest.raises(NativeError, match="is null") as caught:
+            library.call(name, *arguments)
+        assert caught.value.status == Status.INVALID_ARGUMENT
+    for name in ("pm_device_release", "pm_scene_release", "pm_render_release"):
+        getattr(library.load_library(), name)(null)
+
+
+def test_a_structure_of_another_version_is_refused() -> None:
+    picture = Picture(plain(), RenderSettings())
+    settings_struct = library.structs.PmSettings()
+    settings_struct.struct_size = 4
+    render = ctypes.c_void_p()
+    camera_struct = library.to_camera(plain().camera)
+    with pytest.raises(NativeError, match="struct_size"):
+        library.call(
+            "pm_render_create",
+            picture.scene.handle,
+            ctypes.byref(camera_struct),
+            ctypes.byref(settings_struct),
+            ctypes.byref(render),
+        )
+
+
+def test_a_buffer_must_have_been_asked_for_and_fit() -> None:
+    picture = Picture(plain(), RenderSettings(), frozenset({Pass.COMBINED}))
+    with pytest.raises(NativeError, match="was not asked for"):
+        picture.pixels(Pass.DEPTH)
+    with pytest.raises(NativeError, match="floats"):
+        picture.render.read(Pass.COMBINED, 3)
+
+
+def test_a_missing_or_foreign_embree_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(NativeError, match="Embree cannot be loaded") as caught:
+        Device(tmp_path / "libembree4.so.4")
+    assert caught.value.status == Status.EMBREE_ERROR
+    foreign = ctypes.util.find_library("c")
+    with pytest.raises(NativeError, match="has no function rtcNewDevice") as caught:
+        Device(Path(foreign))
+    assert caught.value.status == Status.EMBREE_ERROR
+
+
+def test_handles_may_be_closed_in_any_order_and_twice() -> None:
+    device = Device()
+    native_scene = NativeScene(device, plain())
+    render = NativeRender(native_scene, plain().camera, RenderSettings(), frozenset({Pass.COMBINED}))
+    device.close()
+    native_scene.close()
+    assert render.render_pass(0)
+    assert render.read(Pass.COMBINED, 4).max() > 0
+    render.close()
+    render.close()
+    with pytest.raises(NativeError, match="closed"):
+        render.render_pass(1)
+
+
+def empty_scene() -> SceneData:
+    none = np.empty(0, np.uint32)
+    nothing = Instances(none, np.empty((0, 3, 4), np.float32), none, none)
+    return SceneData([], nothing, [], [], camera((0, -3, 2), (0, 0, 0), (4, 4)), (0.5, 0.25, 0.125))
+
+
+def test_degenerate_scenes_render() -> None:
+    """Nothing at all, a mesh without triangles, triangles without area, an instance flattened to a plane."""
+    assert Picture(empty_scene(), box_filtered()).run(1).pixels() == pytest.approx(
+        np.broadcast_to([0.5, 0.25, 0.125], (4, 4, 3))
+    )
+    hollow = Mesh(np.empty((0, 3), np.float32), np.empty((0, 3), np.uint32))
+    thin = Mesh(np.zeros((3, 3), np.float32), np.array([[0, 1, 2], [0, 0, 0]], np.uint32))
+    flat = np.diag([1.0, 1.0, 0.0]).astype(np.float32) @ IDENTITY
+    for mesh in (hollow, thin):
+        data = plain()
+        meshes = [data.meshes[0], mesh, mesh]
+        picture = Picture(scene(meshes, data.camera, lights=data.lights), box_filtered()).run(2)
+        np.testing.assert_array_equal(picture.pixels(), Picture(data, box_filtered()).run(2).pixels())
+    data = plain()
+    shared = Instances(
+        np.zeros(2, np.uint32), np.stack([IDENTITY, flat]), np.zeros(2, np.uint32), np.zeros(1, np.uint32)
+    )
+    pixels = Picture(replace(data, instances=shared), box_filtered()).run(2).pixels()
+    assert np.isfinite(pixels).all()
+    assert pixels.max() > 0
+
+
+coordinates = st.one_of(
+    st.floats(width=32, allow_nan=True, allow_infinity=True),
+    st.sampled_from([float(np.float32(v)) for v in (0, 1, -1, 1e9, 1e-30, 1e20)]),
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    vertices=arrays(np.float32, st.tuples(st.integers(0, 6), st.just(3)), elements=coordinates),
+    triangles=arrays(np.uint32, st.tuples(st.integers(0, 5), st.just(3)), elements=st.integers(0, 8)),
+    transform=arrays(np.float32, (2, 3, 4), elements=coordinates),
+    power=st.tuples(coordinates, coordinates, coordinates),
+    size=st.tuples(coordinates, coordinates),
+    kind=st.integers(0, 6),
+)
+def test_garbage_is_refused_or_rendered(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    transform: np.ndarray,
+    power: tuple[float, float, float],
+    size: tuple[float, float],
+    kind: int,
+) -> None:
+    data = plain()
+    light = replace(data.lights[0], power=power, size=size, type=kind, spot_angle=1.0)
+    instances = Instances(np.array([0, 1], np.uint32), transform, np.zeros(2, np.uint32), np.zeros(1, np.uint32))
+    fuzzed = replace(data, meshes=[data.meshes[0], Mesh(vertices, triangles)], instances=instances, lights=[light])
+    try:
+        picture = Picture(fuzzed, box_filtered(photon_count=64, max_bounces=4))
+    except NativeError as error:
+        assert error.status == Status.INVALID_ARGUMENT
+        assert str(error)
+        return
+    picture.run(2)
+    assert not np.isnan(picture.pixels()).any()
