@@ -59,7 +59,7 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
 
     started, cpu_started = time.monotonic(), time.process_time()
     camera = engine.camera_override
-    if camera is None:
+    if camera is None or camera.type != "CAMERA":  # Blender lets any object be the active camera
         _fail(engine, "The scene has no camera. Add one and make it the active camera.")
         return
     messages = Messages()

@@ -62,7 +62,7 @@ def test_photons_alone_are_flat_into_the_corners() -> None:
     picture = room(0.5, 1.0, (8, 8), max_bounces=256, **settings)
     points, normals = corner_lines(np.array([0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.002]))
     sums = np.zeros(points.shape[1])
-    passes = 32
+    passes = 96
     for index in range(passes):
         picture.run(1, first=index)
         found = picture.photon_irradiance(INDIRECT_PHOTONS, points.reshape(-1, 3), normals.reshape(-1, 3))

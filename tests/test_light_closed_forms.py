@@ -116,11 +116,11 @@ CASES = {
 }
 
 
-def disc_points(radius: float, rings: int = 24) -> np.ndarray:
+def disc_points(radius: float, rings: int = 12) -> np.ndarray:
     """Return points (N, 3) that share the disc about the origin in equal areas."""
     r = radius * np.sqrt((np.arange(rings) + 0.5) / rings)
-    angle = 2 * np.pi * (np.arange(64) + 0.5) / 64
-    return np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle)), np.zeros((rings, 64))], -1).reshape(-1, 3)
+    angle = 2 * np.pi * (np.arange(32) + 0.5) / 32
+    return np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle)), np.zeros((rings, 32))], -1).reshape(-1, 3)
 
 
 def picture_of(case: Case, distance: float, scale: float, **settings: object) -> Picture:

@@ -296,6 +296,12 @@ def test_no_camera_is_said(scene):
         bpy.ops.render.render()
 
 
+def test_an_object_that_is_no_camera_is_said(scene):
+    scene.camera = link(scene, "Empty", None)
+    with pytest.raises(RuntimeError, match="no camera"):
+        bpy.ops.render.render()
+
+
 def test_a_scene_without_light_says_so(scene):
     quad(scene, "Floor")
     camera_above(scene)

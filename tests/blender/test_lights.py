@@ -103,7 +103,7 @@ def test_sun_on_a_plane_is_the_closed_form(floor):
 
 
 def test_point_above_a_plane_is_the_closed_form(floor):
-    """Radiance albedo/pi * I cos(angle)/d^2 with Blender's intensity I = P/(4 pi^2) of a point lamp times pi."""
+    """Radiance albedo/pi * I cos(angle)/d^2 with the radiant intensity I = P/(4 pi)."""
     floor.photon_maps.passes = 256
     lamp(floor, "POINT", ABOVE, energy=100.0, shadow_soft_size=0.0)
     picture = render(floor)["Combined"][..., 0]
