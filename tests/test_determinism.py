@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Material, SceneData
-from shapes import Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 
 from engine.passes import Pass
 from engine.session import Session
 from engine.settings import Integrator, RenderSettings, Stop
+from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 
 
 def still_life() -> SceneData:

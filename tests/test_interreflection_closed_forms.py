@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Material
-from shapes import Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 
 from engine.passes import Pass
 from engine.settings import Filter, Integrator
+from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 
 INDIRECT_PHOTONS = 1
 ROOM = 2.0

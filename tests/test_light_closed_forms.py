@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Material
-from shapes import Picture, box_filtered, camera, lamp, quad, scene
 
 from engine.passes import Pass
 from engine.settings import Filter
+from tests.shapes import Picture, box_filtered, camera, lamp, quad, scene
 
 ALBEDO = 0.6
 POWER = 100.0

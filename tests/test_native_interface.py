@@ -27,10 +27,10 @@ from photon_maps_native import (
     Status,
     library,
 )
-from shapes import IDENTITY, Picture, box_filtered, camera, lamp, quad, scene
 
 from engine.passes import Pass
 from engine.settings import RenderSettings
+from tests.shapes import IDENTITY, Picture, box_filtered, camera, lamp, quad, scene
 
 NAN, INFINITY = float("nan"), float("inf")
 
