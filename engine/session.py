@@ -21,7 +21,7 @@ class Session:
     def __init__(
         self, scene: SceneData, settings: RenderSettings, buffers: frozenset[Pass] = frozenset({Pass.COMBINED})
     ):
-        """Copy the scene into the helper and build its acceleration structure.
+        """Copy the scene into the helper; the first step builds its acceleration structure.
 
         :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.
         """

@@ -139,21 +139,20 @@ def test_bad_settings_are_refused_by_name(message: str) -> None:
     assert caught.value.status == Status.INVALID_ARGUMENT
 
 
-def test_calls_out_of_order_are_refused() -> None:
-    device = Device()
-    scene_handle = NativeScene(device, plain())
-    with pytest.raises(NativeError, match="committed") as caught:
-        library.call("pm_scene_commit", scene_handle.handle)
+def test_a_scene_that_is_rendered_does_not_change() -> None:
+    picture = Picture(plain(), RenderSettings())
+    with pytest.raises(NativeError, match="being rendered") as caught:
+        library.call("pm_scene_set_world", picture.scene.handle, (ctypes.c_float * 3)())
     assert caught.value.status == Status.INVALID_OPERATION
 
-    uncommitted = ctypes.c_void_p()
-    library.call("pm_scene_create", device.handle, ctypes.byref(uncommitted))
-    render = ctypes.c_void_p()
-    arguments = (library.to_camera(plain().camera), library.structs.PmSettings())
-    with pytest.raises(NativeError, match="not been committed") as caught:
-        library.call("pm_render_create", uncommitted, *map(ctypes.byref, arguments), ctypes.byref(render))
+
+def test_materials_come_before_the_instances_that_name_them() -> None:
+    device = Device()
+    native_scene = NativeScene(device, plain())
+    materials = (library.structs.PmMaterial * 1)(library.to_material(Material()))
+    with pytest.raises(NativeError, match="before the instances") as caught:
+        library.call("pm_scene_set_materials", native_scene.handle, materials, 1)
     assert caught.value.status == Status.INVALID_OPERATION
-    library.load_library().pm_scene_release(uncommitted)
 
 
 def test_null_handles_and_pointers_are_refused() -> None:
@@ -168,7 +167,6 @@ def test_null_handles_and_pointers_are_refused() -> None:
         "pm_scene_set_materials": (null, None, 1),
         "pm_scene_set_lights": (null, None, 1),
         "pm_scene_set_world": (null, (ctypes.c_float * 3)()),
-        "pm_scene_commit": (null,),
         "pm_render_create": (null, None, None, None),
         "pm_render_pass": (null, 0),
         "pm_render_cancel": (null,),

@@ -33,7 +33,6 @@ class _Panel:
 class PHOTON_MAPS_PT_method(_Panel, bpy.types.Panel):
     bl_label = "Photon Maps"
     bl_context = "render"
-    bl_order = -1  # above Blender's own Simplify
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.photon_maps

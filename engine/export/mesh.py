@@ -41,22 +41,14 @@ def read_mesh(mesh: bpy.types.Mesh, owner: str, messages: Messages, is_modelled:
     if not _all_placed(vertices):
         vertices[~(np.abs(vertices) < COORDINATE_LIMIT).all(axis=1)] = 0.0
         normals = None  # the bad vertex is in the normals of its neighbours, too
-        messages.add(
-            owner,
-            "has vertices without a finite position; their faces are left out and it is shaded flat.",
-            "Correct or remove these vertices.",
-        )
+        text = "has vertices without a finite position; their faces are left out and it is shaded flat."
+        messages.add(owner, text, "Correct or remove these vertices.")
     if not keep.all():
         if is_modelled:
-            messages.add(
-                owner,
-                f"has {count - np.count_nonzero(keep)} triangles without a usable area; they are left out.",
-                "Use Mesh > Clean Up > Degenerate Dissolve.",
-            )
+            text = f"has {count - np.count_nonzero(keep)} triangles without a usable area; they are left out."
+            messages.add(owner, text, "Use Mesh > Clean Up > Degenerate Dissolve.")
         triangles, slots, normals = (None if a is None else a[keep] for a in (triangles, slots, normals))
-    if len(triangles) == 0:
-        return None
-    return Mesh(vertices, np.ascontiguousarray(triangles, np.uint32), slots, normals)
+    return Mesh(vertices, np.ascontiguousarray(triangles, np.uint32), slots, normals) if keep.any() else None
 
 
 def read(data: bpy.types.bpy_prop_collection, name: str, shape: Sequence[int], dtype: type) -> np.ndarray:

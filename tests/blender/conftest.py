@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import os
 import shutil
 import sys
@@ -18,20 +19,31 @@ RESOURCES = tempfile.mkdtemp(prefix="photon_maps_blender_")
 os.environ["BLENDER_USER_RESOURCES"] = RESOURCES
 
 import bpy  # noqa: E402
+from mathutils import Matrix  # noqa: E402
+
+from tests.blender.scenes import camera_above, lamp, quad  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 MODULE = "bl_ext.user_default.photon_maps"
 
 
-@pytest.fixture(scope="session", autouse=True)
-def extension():
-    """The installed and enabled extension; disabled at the end, for Blender may not exit with its engine registered."""
+def install() -> None:
+    """Install and enable the extension from its zip."""
     zips = sorted((ROOT / "dist").glob("photon_maps-*-linux-x64.zip"))
     assert zips, "run `make package` first"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)  # the installer of Blender 4.2 leaves a pipe open
         bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(zips[-1]), enable_on_install=True)
         gc.collect()
+
+
+# At import, for the modules of tests import the helper that the zip brings.
+install()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def extension():
+    """The installed extension; disabled at the end, for Blender may not exit with its engine registered."""
     yield sys.modules[MODULE]
     bpy.ops.preferences.addon_disable(module=MODULE)
     shutil.rmtree(RESOURCES)
@@ -56,4 +68,19 @@ def scene(extension, tmp_path):
     image.color_depth, image.exr_codec = "32", "NONE"
     scene.photon_maps.passes = 1
     scene.photon_maps.pixel_filter, scene.photon_maps.pixel_filter_width = "BOX", 1.0
+    return scene
+
+
+@pytest.fixture
+def corner(scene):
+    """A floor and a red wall under a lamp: direct and indirect light."""
+    quad(scene, "Floor", half=2.0)
+    quad(
+        scene,
+        "Wall",
+        Matrix.Translation((-1.0, 0.0, 1.0)) @ Matrix.Rotation(math.pi / 2, 4, "Y"),
+        color=(0.8, 0.1, 0.1),
+    )
+    lamp(scene, "AREA", Matrix.Translation((0.5, 0.0, 2.0)), energy=50.0, size=0.5)
+    camera_above(scene, scale=3.0)
     return scene

@@ -30,7 +30,7 @@ enum { PM_ABI_VERSION = 1 };
 typedef enum pm_status {
     PM_OK = 0,
     PM_INVALID_ARGUMENT = 1,  /* a null handle, a wrong struct_size, an array that fails its checks */
-    PM_INVALID_OPERATION = 2, /* a call out of order, such as rendering a scene before its commit */
+    PM_INVALID_OPERATION = 2, /* a call out of order, such as changing a scene that is rendered */
     PM_OUT_OF_MEMORY = 3,
     PM_CANCELLED = 4,    /* pm_render_cancel was called; the unfinished pass left no trace */
     PM_EMBREE_ERROR = 5, /* Embree is missing, of another version, or failed */
@@ -201,17 +201,17 @@ PM_API pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *mate
 PM_API pm_status pm_scene_set_lights(pm_scene *scene, const pm_light *lights, uint64_t count);
 /* Sets the radiance that arrives from everywhere outside the scene. */
 PM_API pm_status pm_scene_set_world(pm_scene *scene, const float radiance[3]);
-/* Builds the acceleration structure; afterwards the scene does not change. */
-PM_API pm_status pm_scene_commit(pm_scene *scene);
 /* Releases a scene after all of its renders; null is ignored. */
 PM_API void pm_scene_release(pm_scene *scene);
 
-/* Prepares a picture of a committed scene. */
+/* Prepares a picture of a scene, which from now on does not change. The first pass of its first render builds the
+ * acceleration structure. */
 PM_API pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_settings *settings,
                                   pm_render **render);
 /* Renders pass `index`, a function of scene, camera, settings and index alone, and adds it to the picture. */
 PM_API pm_status pm_render_pass(pm_render *render, uint32_t index);
-/* Makes the running call on this render return PM_CANCELLED within 100 ms; a later pass starts afresh. */
+/* Makes the running pass, or the next one if none runs, return PM_CANCELLED within 100 ms; the one after that starts
+ * afresh. */
 PM_API pm_status pm_render_cancel(pm_render *render);
 /* Gets a pass (pm_pass) as rows from the bottom, width x height x channels floats; count is their number. */
 PM_API pm_status pm_render_read(const pm_render *render, uint32_t pass, float *pixels, uint64_t count);

@@ -97,7 +97,6 @@ def declare(library: ctypes.CDLL) -> None:
         "pm_scene_set_materials": [handle, POINTER(structs.PmMaterial), uint64],
         "pm_scene_set_lights": [handle, POINTER(structs.PmLight), uint64],
         "pm_scene_set_world": [handle, c_float * 3],
-        "pm_scene_commit": [handle],
         "pm_render_create": [
             handle,
             POINTER(structs.PmCamera),
@@ -209,12 +208,12 @@ class Device(Handle):
 
 
 class NativeScene(Handle):
-    """A scene in the helper, committed; it copies all arrays."""
+    """A scene in the helper; it copies all arrays."""
 
     release = "pm_scene_release"
 
     def __init__(self, device: Device, scene: SceneData) -> None:
-        """Copy a scene and build its acceleration structure.
+        """Copy a scene.
 
         :raises NativeError: naming the array that fails its checks.
         """
@@ -228,7 +227,6 @@ class NativeScene(Handle):
         lights = (structs.PmLight * len(scene.lights))(*map(to_light, scene.lights))
         call("pm_scene_set_lights", self.handle, lights, len(lights))
         call("pm_scene_set_world", self.handle, (c_float * 3)(*scene.world))
-        call("pm_scene_commit", self.handle)
 
     def _add_mesh(self, mesh: Mesh) -> None:
         vertices = shaped(mesh.vertices, np.float32, (None, 3), "vertices")

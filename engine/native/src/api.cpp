@@ -21,7 +21,13 @@ struct SceneState {
     std::vector<uint32_t> mesh_slots;  // material slots that each mesh uses
     std::vector<pm::Lamp> lamps;
     pm::Vec3 world;
-    std::unique_ptr<pm::Lights> lights;  // once committed
+    std::unique_ptr<pm::Lights> lights;  // once frozen
+
+    void freeze() {
+        if (lights) return;
+        scene.freeze();
+        lights = std::make_unique<pm::Lights>(scene, lamps, world);
+    }
 };
 
 struct InvalidOperation : std::logic_error {
@@ -158,7 +164,7 @@ struct pm_scene {
     std::shared_ptr<SceneState> state;
 
     SceneState &open() {
-        if (state->lights) throw InvalidOperation("the scene has been committed and does not change any more");
+        if (state->scene.frozen()) throw InvalidOperation("the scene is being rendered and does not change any more");
         return *state;
     }
 };
@@ -283,15 +289,6 @@ pm_status pm_scene_set_world(pm_scene *scene, const float radiance[3]) {
     });
 }
 
-pm_status pm_scene_commit(pm_scene *scene) {
-    return guarded([&] {
-        require_handle(scene, "scene");
-        SceneState &state = scene->open();
-        state.scene.commit(pm::thread_count(0));
-        state.lights = std::make_unique<pm::Lights>(state.scene, state.lamps, state.world);
-    });
-}
-
 void pm_scene_release(pm_scene *scene) { const std::unique_ptr<pm_scene> owned(scene); }
 
 pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_settings *settings, pm_render **render) {
@@ -300,9 +297,9 @@ pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_se
         require_handle(camera, "camera");
         require_handle(settings, "settings");
         require_handle(render, "render");
-        if (!scene->state->lights) throw InvalidOperation("the scene has not been committed");
         pm::validate(*camera);
         pm::validate(*settings);
+        scene->state->freeze();
         *render = std::make_unique<pm_render>(scene->state, to_camera(*camera), to_settings(*settings)).release();
     });
 }

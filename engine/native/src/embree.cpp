@@ -6,6 +6,8 @@
 #include <array>
 #include <new>
 
+#include "parallel.h"
+
 namespace photon_maps {
 
 namespace {
@@ -35,6 +37,7 @@ rtc::Functions resolve_functions(void *library) {
     resolve(library, "rtcReleaseScene", f.rtcReleaseScene);
     resolve(library, "rtcSetSceneFlags", f.rtcSetSceneFlags);
     resolve(library, "rtcSetSceneBuildQuality", f.rtcSetSceneBuildQuality);
+    resolve(library, "rtcSetSceneProgressMonitorFunction", f.rtcSetSceneProgressMonitorFunction);
     resolve(library, "rtcCommitScene", f.rtcCommitScene);
     resolve(library, "rtcNewGeometry", f.rtcNewGeometry);
     resolve(library, "rtcReleaseGeometry", f.rtcReleaseGeometry);
@@ -49,7 +52,7 @@ rtc::Functions resolve_functions(void *library) {
 }
 
 constexpr int property_version = 0;  // RTC_DEVICE_PROPERTY_VERSION
-constexpr int error_out_of_memory = 4;
+constexpr int error_out_of_memory = 4, error_cancelled = 6;
 
 }  // namespace
 
@@ -77,8 +80,9 @@ Embree::~Embree() { functions_.rtcReleaseDevice(device_); }
 void Embree::check(const char *what) const {
     const int code = functions_.rtcGetDeviceError(device_);
     if (code == error_out_of_memory) throw std::bad_alloc();
-    constexpr std::array names{"none",          "unknown",         "invalid argument", "invalid operation",
-                               "out of memory", "unsupported CPU", "cancelled"};
+    if (code == error_cancelled) throw Cancelled();
+    constexpr std::array names{"none",          "unknown",        "invalid argument", "invalid operation",
+                               "out of memory", "unsupported CPU"};
     if (code == 0) return;
     const auto known = static_cast<size_t>(code) < names.size();
     throw EmbreeError(std::string("Embree failed while ") + what + ": " +

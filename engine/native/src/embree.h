@@ -59,6 +59,7 @@ struct Functions {
     void (*rtcReleaseScene)(Scene);
     void (*rtcSetSceneFlags)(Scene, SceneFlags);
     void (*rtcSetSceneBuildQuality)(Scene, BuildQuality);
+    void (*rtcSetSceneProgressMonitorFunction)(Scene, bool (*monitor)(void *, double), void *);
     void (*rtcCommitScene)(Scene);
     Geometry (*rtcNewGeometry)(Device, GeometryType);
     void (*rtcReleaseGeometry)(Geometry);
@@ -88,7 +89,7 @@ class Embree {
     rtc::Device device() const { return device_; }
     /// major * 10000 + minor * 100 + patch
     uint32_t version() const { return version_; }
-    /// @throws EmbreeError if a call failed since the last check.
+    /// @throws EmbreeError if a call failed since the last check; Cancelled or std::bad_alloc if that was why.
     void check(const char *what) const;
 
   private:

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "parallel.h"
+
 namespace photon_maps {
 
 namespace {
@@ -99,13 +101,18 @@ void mark_features(std::span<const Double3> inwards, const Double3 &along, std::
 }  // namespace
 
 std::vector<FeatureEdge> find_feature_edges(std::span<const Vec3> vertices,
-                                            std::span<const std::array<uint32_t, 3>> triangles) {
+                                            std::span<const std::array<uint32_t, 3>> triangles,
+                                            const std::atomic<bool> *cancel) {
     const std::vector<uint32_t> welded = weld(vertices);
+
+    throw_if_cancelled(cancel);
 
     // 1. Normals; zero for triangles to ignore.
     std::vector<Double3> normals(triangles.size());
     for (size_t t = 0; t < triangles.size(); ++t) normals[t] = face_normal(Face(vertices, triangles[t]));
     const auto is_degenerate = [&](size_t t) { return dot(normals[t], normals[t]) == 0; };
+
+    throw_if_cancelled(cancel);
 
     // 2. Half-edges, listed by their edge's smaller vertex.
     const auto visit_half_edges = [&](const auto &visit) {
@@ -130,6 +137,7 @@ std::vector<FeatureEdge> find_feature_edges(std::span<const Vec3> vertices,
     std::vector<bool> is_feature;
     uint32_t list_begin = 0;
     for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+        if (vertex % 4096 == 0) throw_if_cancelled(cancel);
         const std::span list(half_edges.begin() + list_begin, half_edges.begin() + ends[vertex]);
         list_begin = ends[vertex];
         std::ranges::sort(list, [](const HalfEdge &a, const HalfEdge &b) {

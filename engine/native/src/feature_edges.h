@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,8 +29,11 @@ struct FeatureEdge {
 /// imported meshes split them. Triangles without area are ignored.
 /// @param vertices finite positions
 /// @param triangles indices below vertices.size(), fewer than 2^32 / 3 triangles
+/// @param cancel may be null
+/// @throws Cancelled once `cancel` is set
 std::vector<FeatureEdge> find_feature_edges(std::span<const Vec3> vertices,
-                                            std::span<const std::array<uint32_t, 3>> triangles);
+                                            std::span<const std::array<uint32_t, 3>> triangles,
+                                            const std::atomic<bool> *cancel = nullptr);
 
 /// Returns a feature edge carried along with its mesh; a mirrored mesh keeps its faces on the left.
 FeatureEdge transformed(const FeatureEdge &edge, const Transform &transform);

@@ -23,7 +23,7 @@ void parallel_for(int threads, size_t count, const std::atomic<bool> *cancel, co
     const auto work = [&] {
         try {
             while (!stop) {
-                if (cancel && *cancel) throw Cancelled();
+                throw_if_cancelled(cancel);
                 const size_t i = next++;
                 if (i >= count) return;
                 body(i);

@@ -14,6 +14,11 @@ struct Cancelled : std::runtime_error {
     Cancelled() : std::runtime_error("the render was cancelled") {}
 };
 
+/// @throws Cancelled if `cancel` (may be null) is set.
+inline void throw_if_cancelled(const std::atomic<bool> *cancel) {
+    if (cancel && *cancel) throw Cancelled();
+}
+
 /// Returns the number of threads to use: `requested`, or one for every core where it is 0.
 int thread_count(uint32_t requested);
 

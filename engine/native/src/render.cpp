@@ -35,7 +35,7 @@ uint64_t photon_count_for(const RenderSettings &settings, const Camera &camera) 
 
 }  // namespace
 
-Render::Render(const Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings)
+Render::Render(Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings)
     : scene_(scene),
       lights_(lights),
       camera_(camera),
@@ -84,6 +84,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     TracedPhotons photons;
     float radius = 0;
     RenderStatistics spent;
+    scene_.build(settings_.threads, &cancel_);
     if (needs_photons()) {
         // Choose the kernel before the first pass.
         if (!first_radius_) {

@@ -37,10 +37,10 @@ struct RenderStatistics {
     double seconds_trace = 0, seconds_build = 0, seconds_gather = 0;
 };
 
-/// One picture of a scene, which must outlive it.
+/// One picture of a frozen scene, which must outlive it. The first pass builds the scene.
 class Render {
   public:
-    Render(const Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings);
+    Render(Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings);
 
     /// Renders a pass, a function of scene, camera, settings and index alone, and adds it to the film.
     /// @throws Cancelled after cancel(); the film then holds the passes finished before
@@ -66,7 +66,7 @@ class Render {
     float radius_of_pass(uint32_t index) const;
     void render_into(Film &pass_film, uint32_t index);
 
-    const Scene &scene_;
+    Scene &scene_;
     const Lights &lights_;
     Camera camera_;
     RenderSettings settings_;

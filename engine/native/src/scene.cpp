@@ -38,12 +38,20 @@ Scene::~Scene() {
     mesh_scenes_.clear();
 }
 
-void Scene::commit(int threads) {
+void Scene::freeze() {
+    if (frozen_) return;
     count_uses();
     move_single_uses_to_world();
     find_bounds();
-    find_world_edges(threads);
-    build();
+    frozen_ = true;
+}
+
+void Scene::build(int threads, const std::atomic<bool> *cancel) {
+    const std::lock_guard lock(build_mutex_);
+    if (built_) return;
+    find_world_edges(threads, cancel);
+    build_embree(cancel);
+    built_ = true;
 }
 
 void Scene::count_uses() {
@@ -89,12 +97,13 @@ void Scene::move_single_uses_to_world() {
     }
 }
 
-void Scene::find_world_edges(int threads) {
+void Scene::find_world_edges(int threads, const std::atomic<bool> *cancel) {
+    feature_edges_.clear();
     std::vector<std::vector<FeatureEdge>> edges(meshes.size());
-    parallel_for(threads, meshes.size(), nullptr, [&](size_t m) {
+    parallel_for(threads, meshes.size(), cancel, [&](size_t m) {
         const Mesh &mesh = meshes[m];
         if (mesh.use_count > 0)
-            edges[m] = find_feature_edges(std::span(mesh.vertices).first(mesh.vertex_count()), mesh.triangles);
+            edges[m] = find_feature_edges(std::span(mesh.vertices).first(mesh.vertex_count()), mesh.triangles, cancel);
     });
     for (const Instance &instance : instances) {
         for (const FeatureEdge &edge : edges[instance.mesh])
@@ -102,13 +111,16 @@ void Scene::find_world_edges(int threads) {
     }
 }
 
-Scene::SceneHandle Scene::new_scene() const {
+Scene::SceneHandle Scene::new_scene(const std::atomic<bool> *cancel) const {
     const rtc::Functions &f = embree_->functions();
     SceneHandle scene(f.rtcNewScene(embree_->device()), {embree_.get()});
     embree_->check("creating a scene");
     // Without this flag rays slip between neighbouring triangles, and light leaks.
     f.rtcSetSceneFlags(scene.get(), rtc::SceneFlags::robust);
     f.rtcSetSceneBuildQuality(scene.get(), rtc::BuildQuality::medium);
+    // Embree asks now and then whether to go on.
+    const auto go_on = [](void *flag, double) { return !*static_cast<const std::atomic<bool> *>(flag); };
+    if (cancel) f.rtcSetSceneProgressMonitorFunction(scene.get(), go_on, const_cast<std::atomic<bool> *>(cancel));
     return scene;
 }
 
@@ -124,16 +136,19 @@ void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) co
     f.rtcReleaseGeometry(geometry);
 }
 
-void Scene::build() {
+void Scene::build_embree(const std::atomic<bool> *cancel) {
+    top_scene_.reset();
+    mesh_scenes_.clear();
     const rtc::Functions &f = embree_->functions();
     // Meshes with several uses get a scene of their own, to be instanced.
     for (const Mesh &mesh : meshes) {
-        mesh_scenes_.push_back(mesh.use_count > 1 ? new_scene() : SceneHandle(nullptr, {embree_.get()}));
+        mesh_scenes_.push_back(mesh.use_count > 1 ? new_scene(cancel) : SceneHandle(nullptr, {embree_.get()}));
         if (mesh.use_count <= 1) continue;
         attach_triangles(mesh_scenes_.back().get(), mesh, 0);
         f.rtcCommitScene(mesh_scenes_.back().get());
+        embree_->check("building the acceleration structure of a mesh");
     }
-    top_scene_ = new_scene();
+    top_scene_ = new_scene(cancel);
     for (uint32_t i = 0; i < instances.size(); ++i) {
         const Mesh &mesh = meshes[instances[i].mesh];
         if (mesh.use_count == 1) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -79,7 +81,7 @@ struct WorldTriangle {
 /// Bound of the rounding error of a point computed on the triangle, in scene units.
 float position_error(const WorldTriangle &triangle);
 
-/// All of the scene's surfaces. Add, set, commit; then ask from any number of threads.
+/// All of the scene's surfaces. Add and set, freeze, build; then ask from any number of threads.
 class Scene {
   public:
     explicit Scene(std::shared_ptr<const Embree> embree) : embree_(std::move(embree)) {}
@@ -92,9 +94,14 @@ class Scene {
     std::vector<uint32_t> slot_materials;
     std::vector<Material> materials;
 
-    /// Moves meshes of a single use into world space, builds Embree's structure, and finds the feature edges.
+    /// Ends the changes: moves meshes of a single use into world space and finds the bounds. Again: does nothing.
     /// @throws std::invalid_argument if an instance reaches beyond the coordinates that single precision bears
-    void commit(int threads);
+    void freeze();
+    bool frozen() const { return frozen_; }
+
+    /// Builds Embree's structure of the frozen scene and finds the feature edges, once.
+    /// @throws Cancelled once `cancel` is set; a later call starts afresh
+    void build(int threads, const std::atomic<bool> *cancel);
 
     bool intersect(const Ray &ray, SurfacePoint &hit) const;
     bool occluded(const Ray &ray) const;
@@ -116,12 +123,14 @@ class Scene {
     void count_uses();
     void move_single_uses_to_world();
     void find_bounds();
-    void find_world_edges(int threads);
-    void build();
-    SceneHandle new_scene() const;
+    void find_world_edges(int threads, const std::atomic<bool> *cancel);
+    void build_embree(const std::atomic<bool> *cancel);
+    SceneHandle new_scene(const std::atomic<bool> *cancel) const;
     void attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) const;
 
     std::shared_ptr<const Embree> embree_;
+    bool frozen_ = false, built_ = false;
+    std::mutex build_mutex_;                ///< several renders may share the scene
     std::vector<SceneHandle> mesh_scenes_;  ///< of the meshes that are instanced
     SceneHandle top_scene_{nullptr, {nullptr}};
     std::vector<FeatureEdge> feature_edges_;

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Esc, and what is said when something is missing or goes wrong."""
+
+from __future__ import annotations
+
+import time
+
+import bpy
+import pytest
+
+from tests.blender.scenes import (
+    camera_above,
+    link,
+    messages,
+    quad,
+    render,
+    render_with_summary,
+)
+
+
+class Watched:
+    """A render engine whose calls are watched, and whose Esc can be pressed."""
+
+    def __init__(self, engine, after=None):
+        self._engine = engine
+        self._after = after
+        self.polls = []
+
+    def __getattr__(self, name):
+        return getattr(self._engine, name)
+
+    def test_break(self):
+        self.polls.append(time.monotonic())
+        return self._after is not None and self._after(self)
+
+
+@pytest.fixture
+def watch(extension, monkeypatch):
+    """Return a function that makes Esc be pressed when its argument says so, and the list of engines watched."""
+    from bl_ext.user_default.photon_maps.engine import final_render
+
+    original = final_render.render
+
+    def arrange(after=None):
+        watched = []
+
+        def instead(engine, depsgraph):
+            watched.append(Watched(engine, after))
+            original(watched[-1], depsgraph)
+
+        monkeypatch.setattr(final_render, "render", instead)
+        return watched
+
+    return arrange
+
+
+def test_esc_keeps_the_passes_done(corner, watch):
+    corner.photon_maps.passes = 2
+    expected = render(corner)["Combined"]
+    corner.photon_maps.passes = 1_000_000
+    corner.photon_maps.use_auto = False
+    corner.photon_maps.photon_count = 1000
+    engines = watch(lambda engine: len(engine.polls) > 20)
+    passes, summary = render_with_summary(corner)
+    assert 1 <= summary["passes"] < 1_000_000
+    assert passes["Combined"].shape == expected.shape and passes["Combined"][..., :3].max() > 0.0
+    assert len(engines) == 1
+
+
+def test_esc_before_the_first_pass_is_said(corner, watch):
+    watch(lambda engine: True)
+    passes, summary = render_with_summary(corner)
+    assert summary["passes"] == 0 and not passes["Combined"][..., :3].any()
+    assert any("cancelled" in line for line in summary["messages"])
+
+
+def test_esc_ends_the_reading_of_a_large_scene(corner, watch, monkeypatch):
+    from bl_ext.user_default.photon_maps.engine.session import Session
+
+    mesh = bpy.data.objects["Floor"].data
+    for _ in range(600):
+        link(corner, "Copy", mesh)
+    monkeypatch.setattr(Session, "__init__", None)  # must not be reached
+    engines = watch(lambda engine: True)
+    bpy.ops.render.render()
+    assert len(engines[0].polls) == 1
+
+
+def test_esc_cancels_a_running_pass(corner, watch):
+    """A pass of half a billion photons would run for minutes."""
+    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
+    corner.photon_maps.radius = 0.1
+    engines = watch(lambda engine: len(engine.polls) > 5)
+    _, summary = render_with_summary(corner)
+    assert summary["passes"] == 0 and len(engines[0].polls) > 5
+
+
+def test_esc_is_looked_for_all_the_time(corner, watch):
+    """By the number of looks, not by a clock: one pass of a second means dozens of them."""
+    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
+    engines = watch(lambda engine: len(engine.polls) > 1 and engine.polls[-1] - engine.polls[0] > 1.0)
+    render_with_summary(corner)
+    assert len(engines[0].polls) > 20
+
+
+def test_a_failing_helper_is_reported(corner, monkeypatch):
+    from bl_ext.user_default.photon_maps.engine.session import Session
+    from photon_maps_native import NativeError, Status
+
+    def fail(self):
+        raise NativeError(Status.INTERNAL_ERROR, "the array is upside down")
+
+    monkeypatch.setattr(Session, "step", fail)
+    with pytest.raises(RuntimeError, match="the array is upside down"):
+        bpy.ops.render.render()
+
+
+def test_a_defect_is_reported(corner, monkeypatch, capfd):
+    from bl_ext.user_default.photon_maps.engine.session import Session
+
+    def fail(self):
+        raise MemoryError("no room")
+
+    monkeypatch.setattr(Session, "step", fail)
+    with pytest.raises(RuntimeError, match="MemoryError: no room"):
+        bpy.ops.render.render()
+    assert "Traceback" in capfd.readouterr().err
+
+
+def test_a_missing_helper_is_reported(corner, monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "photon_maps_native", None)
+    with pytest.raises(RuntimeError, match="native helper cannot be loaded"):
+        bpy.ops.render.render()
+
+
+def test_no_camera_is_said(scene):
+    with pytest.raises(RuntimeError, match="no camera"):
+        bpy.ops.render.render()
+
+
+def test_an_object_that_is_no_camera_is_said(scene):
+    scene.camera = link(scene, "Empty", None)
+    with pytest.raises(RuntimeError, match="no camera"):
+        bpy.ops.render.render()
+
+
+def test_a_scene_without_light_says_so(scene):
+    quad(scene, "Floor")
+    camera_above(scene)
+    passes, summary = render_with_summary(scene)
+    assert not passes["Combined"][..., :3].any()
+    assert any("no light" in line for line in summary["messages"])
+
+
+def test_a_scene_without_anything_says_so(scene):
+    camera_above(scene)
+    assert any("no light" in line for line in messages(scene))
