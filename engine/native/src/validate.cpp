@@ -10,6 +10,7 @@ namespace photon_maps {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
+constexpr float min_radius = 1e-12f;  // its square is still a normal number
 
 void require_struct_size(size_t given, size_t expected, const char *name) {
     require(given == expected, std::string(name) + " has struct_size " + std::to_string(given) + ", expected " +
@@ -122,7 +123,7 @@ void validate(const pm_settings &settings) {
     require_struct_size(settings.struct_size, sizeof(pm_settings), "pm_settings");
     require(settings.integrator <= PM_PATH_TRACING, "unknown integrator " + std::to_string(settings.integrator));
     require(settings.photon_count <= 1'000'000'000, "photon_count is beyond 1e9");
-    require_range(settings.radius, 0, max_coordinate, "radius");
+    if (settings.radius != 0) require_range(settings.radius, min_radius, max_coordinate, "radius");
     require(settings.filter <= PM_FILTER_EPANECHNIKOV, "unknown filter " + std::to_string(settings.filter));
     require(settings.cone_k >= 1 && std::isfinite(settings.cone_k), "cone_k must be a finite number of at least 1");
     require(settings.max_bounces <= 1024, "max_bounces is beyond 1024");
