@@ -38,7 +38,7 @@ export BLEND OUT FRAME SIZE
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
-	@echo 'make bench     speed of the photon map and of the photon pass'
+	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
 	@echo 'make clean     remove build, dist and wheels; .venv stays'
@@ -122,13 +122,14 @@ test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	timeout 900 $(PYTHON) -m pytest tests --ignore=tests/blender
 	timeout 900 $(PYTHON) -m pytest tests/blender -o pythonpath=.  # without build/native: the wheels are the zip's
 
-bench: build/native/stamp
+bench: build/native/stamp .venv/system.stamp
 	@[ -e /usr/include/nanoflann.hpp ] || bash tools/apt_install.sh libnanoflann-dev
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_BENCHMARKS=ON
 	cmake --build build/cmake/release
 	@for program in build/cmake/release/benchmarks/*_bench; do \
 	    echo "== $$(basename $$program)"; PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) $$program || exit 1; \
 	done
+	@echo '== export_bench'; PYTHONPATH=.:build/native $(PYTHON) benchmarks/export_bench.py
 
 clean:
 	rm -rf build dist wheels

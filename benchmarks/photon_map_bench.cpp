@@ -1,35 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The photon map against nanoflann (libnanoflann-dev): CPU time to build, to sum the photons within a radius, and to
-// find the k nearest. Both do the same work on the same queries, by turns in one process.
-#include <time.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
+// The photon map against nanoflann (libnanoflann-dev): building it, summing the photons within a radius, and finding
+// the k nearest. Both do the same work on the same queries, on one thread.
 #include <memory>
 #include <nanoflann.hpp>
 #include <random>
-#include <vector>
 
 #include "estimate.h"
+#include "measure.h"
 #include "photon_map.h"
 
 using namespace photon_maps;
 
 namespace {
 
-double cpu_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double seconds_of(const std::function<void()> &work) {
-    const double start = cpu_seconds();
-    work();
-    return cpu_seconds() - start;
-}
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int rounds = 5;
+constexpr size_t leaf_size = 16;  // of nanoflann: the fastest here of 8, 16 and 32
 
 /// What nanoflann asks of its points.
 struct Dataset {
@@ -67,6 +53,16 @@ struct FluxSum {
     }
 };
 
+// --- Photons and queries ---
+
+/// A query, and the density of photons around it, 1/m2.
+struct Place {
+    Query query;
+    float density;
+
+    float radius_holding(double photons) const { return std::sqrt(static_cast<float>(photons) / (pi * density)); }
+};
+
 /// A point of the unit cube's walls, by face and two coordinates; normals point inwards.
 Query on_wall(int face, float u, float v) {
     const float side = face % 2 == 0 ? 0.0f : 1.0f, inward = face % 2 == 0 ? 1.0f : -1.0f;
@@ -78,15 +74,14 @@ Query on_wall(int face, float u, float v) {
 struct Scene {
     const char *name;
     std::vector<Photon> photons;
-    std::vector<Query> queries;
-    std::vector<float> densities;  ///< photons per area at each query
+    std::vector<Place> places;  ///< row by row, as pixels ask for them
 };
 
-/// Photons evenly on the walls of a cube; with `cluster`, half of photons and queries on a tenth by a tenth of its
+/// Photons evenly on the walls of a cube; with `cluster`, half of photons and places on a tenth by a tenth of its
 /// floor.
 Scene make_scene(const char *name, size_t photon_count, bool cluster) {
     constexpr float patch = 0.1f;
-    Scene scene{name, {}, {}, {}};
+    Scene scene{name, {}, {}};
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(0, 1);
     const size_t clustered = cluster ? photon_count / 2 : 0;
@@ -98,140 +93,137 @@ Scene make_scene(const char *name, size_t photon_count, bool cluster) {
         scene.photons.push_back({at.position, flux, pack_normal(at.normal, 0), pack_direction(-at.normal)});
     }
     const auto even_density = static_cast<float>(photon_count - clustered) / 6;
-    const auto add_raster = [&](int face, int size, float origin, float extent, float density) {
+    const float cluster_density = even_density + static_cast<float>(clustered) / (patch * patch);
+    const auto in_cluster = [&](float t) { return t >= 0.45f && t < 0.45f + patch; };
+    const auto add_raster = [&](int face, int size, float origin, float extent) {
         const float step = extent / static_cast<float>(size);
         for (int y = 0; y < size; ++y) {
             for (int x = 0; x < size; ++x) {
-                scene.queries.push_back(on_wall(face, origin + step * (static_cast<float>(x) + uniform(random)),
-                                                origin + step * (static_cast<float>(y) + uniform(random))));
-                scene.densities.push_back(density);
+                const float u = origin + step * (static_cast<float>(x) + uniform(random));
+                const float v = origin + step * (static_cast<float>(y) + uniform(random));
+                const bool dense = cluster && face == 4 && in_cluster(u) && in_cluster(v);
+                scene.places.push_back({on_wall(face, u, v), dense ? cluster_density : even_density});
             }
         }
     };
-    for (int face = 0; face < 6; ++face) add_raster(face, cluster ? 140 : 200, 0, 1, even_density);
-    if (cluster) add_raster(4, 342, 0.45f, patch, even_density + static_cast<float>(clustered) / (patch * patch));
+    for (int face = 0; face < 6; ++face) add_raster(face, cluster ? 140 : 200, 0, 1);
+    if (cluster) add_raster(4, 342, 0.45f, patch);
     return scene;
 }
 
-void run(const Scene &scene) {
-    // 1. Build. nanoflann's leaf size is the best of those tried.
-    std::unique_ptr<PhotonMap> map;
-    const double build_ours =
-        seconds_of([&] { map = std::make_unique<PhotonMap>(std::span(scene.photons), 1, nullptr); });
-    const Dataset dataset{scene.photons};
-    const auto sum_nanoflann = [&](const Tree &tree, double photons_wanted, size_t step) {
-        double found = 0;
-        for (size_t q = 0; q < scene.queries.size(); q += step) {
-            const float radius = std::sqrt(static_cast<float>(photons_wanted) / (pi * scene.densities[q]));
-            FluxSum result{scene.photons, scene.queries[q], radius};
-            const Vec3 p = scene.queries[q].position;
-            const float point[3] = {p.x, p.y, p.z};
-            tree.findNeighbors(result, point, nanoflann::SearchParams());
-            found += result.count;
-        }
-        return found;
-    };
-    std::unique_ptr<Tree> tree;
-    double best_seconds = 1e30, build_nanoflann = 0;
-    size_t best_leaf = 0;
-    for (const size_t leaf : {16, 32}) {
-        std::unique_ptr<Tree> candidate;
-        const double build = seconds_of([&] {
-            candidate = std::make_unique<Tree>(3, dataset, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
-            candidate->buildIndex();
-        });
-        const double seconds = seconds_of([&] { sum_nanoflann(*candidate, 50, 1); });
-        if (seconds > best_seconds) continue;
-        best_seconds = seconds;
-        best_leaf = leaf;
-        build_nanoflann = build;
-        tree = std::move(candidate);
-    }
-    // The k nearest take nanoflann so long that blocks of neighbouring queries are enough: one in eight.
-    const auto is_sampled = [](size_t q) { return q / 1000 % 8 == 0; };
-    const auto thousand_queries = static_cast<double>(scene.queries.size()) * 1e-3;
-    std::printf("%s: %zu photons, %zu queries, %.1f bytes a photon; nanoflann's leaf size %zu\n", scene.name,
-                scene.photons.size(), scene.queries.size(),
-                static_cast<double>(map->memory_bytes()) / static_cast<double>(scene.photons.size()), best_leaf);
-    std::printf("  %-34s %9.3f s    nanoflann %9.3f s    ratio %5.2f\n", "build", build_ours, build_nanoflann,
-                build_nanoflann / build_ours);
-    const auto report = [&](const char *what, double wanted, double ours, double theirs, double found) {
-        std::printf("  %-18s %4.0f photons    %9.1f kq/s nanoflann %9.1f kq/s ratio %5.2f  (%.1f found)\n", what,
-                    wanted, thousand_queries / ours, thousand_queries / theirs, theirs / ours,
-                    found / thousand_queries * 1e-3);
-    };
+/// Runs of 500 places, one run in `step`: nanoflann would take minutes for all.
+std::vector<Place> some_of(const std::vector<Place> &places, size_t step) {
+    std::vector<Place> some;
+    for (size_t i = 0; i < places.size(); ++i)
+        if (i / 500 % step == 0) some.push_back(places[i]);
+    return some;
+}
 
-    constexpr int rounds = 2;
+// --- The work of both ---
+
+void report(const char *what, double work, const bench::Times &ours, const bench::Times &theirs) {
+    std::printf("  %-30s %-28s %-28s %s\n", what, bench::rate(work * 1e-3, ours.cpu).text(1).c_str(),
+                bench::rate(work * 1e-3, theirs.cpu).text(1).c_str(),
+                bench::ratio(theirs.cpu, ours.cpu).text(2).c_str());
+}
+
+void compare_sums(const PhotonMap &map, const Tree &tree, const Scene &scene, double photons) {
+    const std::vector<Place> places = some_of(scene.places, 4);
     const EdgeIndex no_edges;
-    for (const double wanted : {50.0, 200.0}) {
-        // 2. The sum within a radius.
-        double ours = 1e30, theirs = 1e30, found = 0, found_nanoflann = 0;
-        for (int round = 0; round < rounds; ++round) {
-            ours = std::min(ours, seconds_of([&] {
-                                found = 0;
-                                for (size_t q = 0; q < scene.queries.size(); ++q) {
-                                    const float radius =
-                                        std::sqrt(static_cast<float>(wanted) / (pi * scene.densities[q]));
-                                    const Kernel kernel{PM_FILTER_EPANECHNIKOV, radius, 1};
-                                    found += estimate_irradiance(*map, no_edges, scene.queries[q], kernel).photons;
-                                }
-                            }));
-            theirs = std::min(theirs, seconds_of([&] { found_nanoflann = sum_nanoflann(*tree, wanted, 1); }));
-        }
-        report("range sum", wanted, ours, theirs, found);
-        if (std::abs(found - found_nanoflann) > 1e-5 * found)
-            std::printf("  but nanoflann found %.0f\n", found_nanoflann);
+    uint64_t found = 0, found_nanoflann = 0;
+    const auto times = bench::run_by_turns(
+        rounds, {[&] {
+                     found = 0;
+                     for (const Place &place : places) {
+                         const Kernel kernel{PM_FILTER_EPANECHNIKOV, place.radius_holding(photons), 1};
+                         found += estimate_irradiance(map, no_edges, place.query, kernel).photons;
+                     }
+                 },
+                 [&] {
+                     found_nanoflann = 0;
+                     for (const Place &place : places) {
+                         FluxSum sum{scene.photons, place.query, place.radius_holding(photons)};
+                         const Vec3 p = place.query.position;
+                         const float point[3] = {p.x, p.y, p.z};
+                         tree.findNeighbors(sum, point, nanoflann::SearchParams());
+                         found_nanoflann += sum.count;
+                     }
+                 }});
+    const auto difference = std::abs(static_cast<double>(found) - static_cast<double>(found_nanoflann));
+    // A photon on the very edge of a kernel may be in or out by a rounding.
+    bench::require(difference <= 1e-5 * static_cast<double>(found), "nanoflann found other photons within the radius");
+    char what[64];
+    std::snprintf(what, sizeof what, "queries: estimate of %.0f",
+                  static_cast<double>(found) / static_cast<double>(places.size()));
+    report(what, static_cast<double>(places.size()), times[0], times[1]);
+}
 
-        // 3. The k nearest: without a limit, and limited by what the query before needed.
-        const auto k = static_cast<size_t>(wanted);
-        double guessed = 1e30, unlimited = 1e30, checksum = 0, checksum_nanoflann = 0;
-        theirs = 1e30;
-        std::vector<Neighbor> neighbors;
-        const auto furthest = [&] {
-            return std::ranges::max_element(neighbors, {}, &Neighbor::distance_squared)->distance_squared;
-        };
-        std::vector<uint32_t> indices(k);
-        std::vector<float> distances(k);
-        for (int round = 0; round < rounds; ++round) {
-            unlimited =
-                std::min(unlimited, seconds_of([&] {
-                             for (const Query &query : scene.queries) {
-                                 map->nearest(query.position, k, std::numeric_limits<float>::infinity(), neighbors);
-                             }
-                         }));
-            guessed = std::min(guessed, seconds_of([&] {
-                                   checksum = 0;
-                                   float limit = std::numeric_limits<float>::infinity();
-                                   for (size_t q = 0; q < scene.queries.size(); ++q) {
-                                       const Vec3 p = scene.queries[q].position;
-                                       map->nearest(p, k, limit, neighbors);
-                                       if (neighbors.size() < k) {
-                                           map->nearest(p, k, std::numeric_limits<float>::infinity(), neighbors);
-                                       }
-                                       const float distance_squared = furthest();
-                                       limit = std::sqrt(distance_squared) * 1.15f;
-                                       if (is_sampled(q)) checksum += distance_squared;
-                                   }
-                               }));
-            double sampled = 0;
-            const double seconds = seconds_of([&] {
-                checksum_nanoflann = 0;
-                for (size_t q = 0; q < scene.queries.size(); ++q) {
-                    if (!is_sampled(q)) continue;
-                    const Vec3 p = scene.queries[q].position;
-                    const float point[3] = {p.x, p.y, p.z};
-                    nanoflann::KNNResultSet<float, uint32_t> result(k);
-                    result.init(indices.data(), distances.data());
-                    tree->findNeighbors(result, point, nanoflann::SearchParams());
-                    checksum_nanoflann += distances[k - 1];
-                    ++sampled;
-                }
-            });
-            theirs = std::min(theirs, seconds * static_cast<double>(scene.queries.size()) / sampled);
-        }
-        report("nearest", wanted, unlimited, theirs, wanted * thousand_queries * 1e3);
-        report("nearest, guessed", wanted, guessed, theirs, wanted * thousand_queries * 1e3);
-        if (std::abs(checksum - checksum_nanoflann) > 1e-5 * checksum) std::printf("  but nanoflann found others\n");
+void compare_nearest(const PhotonMap &map, const Tree &tree, const Scene &scene, size_t k) {
+    const std::vector<Place> places = some_of(scene.places, k > 100 ? 24 : 8);
+    std::vector<Neighbor> neighbors;
+    std::vector<uint32_t> indices(k);
+    std::vector<float> distances(k);
+    const auto furthest = [&] {
+        return std::ranges::max_element(neighbors, {}, &Neighbor::distance_squared)->distance_squared;
+    };
+    std::vector<float> unlimited, guessed, nanoflann_found;  // squared distance of the k-th
+    const auto times =
+        bench::run_by_turns(rounds, {[&] {
+                                         unlimited.clear();
+                                         for (const Place &place : places) {
+                                             map.nearest(place.query.position, k, infinity, neighbors);
+                                             unlimited.push_back(furthest());
+                                         }
+                                     },
+                                     // Limited by what the query before needed, as an estimate by the k nearest would.
+                                     [&] {
+                                         guessed.clear();
+                                         float limit = infinity;
+                                         for (const Place &place : places) {
+                                             map.nearest(place.query.position, k, limit, neighbors);
+                                             if (neighbors.size() < k)
+                                                 map.nearest(place.query.position, k, infinity, neighbors);
+                                             guessed.push_back(furthest());
+                                             limit = std::sqrt(guessed.back()) * 1.15f;
+                                         }
+                                     },
+                                     [&] {
+                                         nanoflann_found.clear();
+                                         for (const Place &place : places) {
+                                             const Vec3 p = place.query.position;
+                                             const float point[3] = {p.x, p.y, p.z};
+                                             nanoflann::KNNResultSet<float, uint32_t> result(k);
+                                             result.init(indices.data(), distances.data());
+                                             tree.findNeighbors(result, point, nanoflann::SearchParams());
+                                             nanoflann_found.push_back(distances[k - 1]);
+                                         }
+                                     }});
+    bench::require(unlimited == nanoflann_found && guessed == nanoflann_found, "nanoflann found others as the nearest");
+    const auto count = static_cast<double>(places.size());
+    const std::string nearest = "queries: " + std::to_string(k) + " nearest";
+    report(nearest.c_str(), count, times[0], times[2]);
+    report((nearest + ", guessed").c_str(), count, times[1], times[2]);
+}
+
+void run(const Scene &scene) {
+    std::unique_ptr<PhotonMap> map;
+    std::unique_ptr<Tree> tree;
+    const Dataset dataset{scene.photons};
+    const auto times =
+        bench::run_by_turns(3, {[&] { map = std::make_unique<PhotonMap>(std::span(scene.photons), 1, nullptr); },
+                                [&] {
+                                    const nanoflann::KDTreeSingleIndexAdaptorParams params(leaf_size);
+                                    tree = std::make_unique<Tree>(3, dataset, params);
+                                    tree->buildIndex();
+                                }});
+    const auto photons = static_cast<double>(scene.photons.size());
+    std::printf("%s: %.0f photons, %.1f bytes each in the map\n", scene.name, photons,
+                static_cast<double>(map->memory_bytes()) / photons);
+    std::printf("  %-30s %-28s %-28s %s\n", "thousands a second of", "photon map", "nanoflann", "times as fast");
+    report("photons: build", photons, times[0], times[1]);
+    for (const size_t count : {50, 200}) {
+        compare_sums(*map, *tree, scene, static_cast<double>(count));
+        compare_nearest(*map, *tree, scene, count);
     }
 }
 
@@ -239,7 +231,10 @@ void run(const Scene &scene) {
 
 /// Usage: photon_map_bench [photons in millions]
 int main(int argc, char **argv) {
-    const auto photons = static_cast<size_t>(1e6 * (argc > 1 ? std::atof(argv[1]) : 2));
+    const double millions = argc > 1 ? std::atof(argv[1]) : 2;
+    bench::require(millions >= 0.01 && millions <= 100, "photons in millions: a number from 0.01 to 100 is expected");
+    bench::print_machine();
+    const auto photons = static_cast<size_t>(1e6 * millions);
     run(make_scene("even", photons, false));
     run(make_scene("clustered", photons, true));
 }

@@ -34,5 +34,6 @@ def register() -> None:
 
 def unregister() -> None:
     # An engine that is still registered when Blender exits makes some versions hang or crash.
-    bpy.utils.unregister_class(PhotonMapsEngine)
+    if PhotonMapsEngine.is_registered:  # Blender itself took it out if another add-on brought an engine of its name
+        bpy.utils.unregister_class(PhotonMapsEngine)
     last_render.forget()

@@ -7,12 +7,9 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
-from photon_maps_native.scene_data import Mesh
+from photon_maps_native.scene_data import MAX_COORDINATE, Mesh
 
 from ..messages import Messages
-
-#: Coordinates beyond this are left out: Embree takes larger ones for invalid.
-COORDINATE_LIMIT = 1e18
 
 
 def read_mesh(mesh: bpy.types.Mesh, owner: str, messages: Messages, is_modelled: bool = True) -> Mesh | None:
@@ -39,9 +36,11 @@ def read_mesh(mesh: bpy.types.Mesh, owner: str, messages: Messages, is_modelled:
     areas = read(mesh.loop_triangles, "area", (count,), np.float32)
     keep = (areas > 0.0) & (areas < np.inf)
     if not _all_placed(vertices):
-        vertices[~(np.abs(vertices) < COORDINATE_LIMIT).all(axis=1)] = 0.0
+        astray = ~(np.abs(vertices) < MAX_COORDINATE).all(axis=1)
+        vertices[astray] = 0.0
+        keep &= ~astray[triangles].any(axis=1)
         normals = None  # the bad vertex is in the normals of its neighbours, too
-        text = "has vertices without a finite position; their faces are left out and it is shaded flat."
+        text = "has vertices that are nowhere or absurdly far away; their faces are left out and it is shaded flat."
         messages.add(owner, text, "Correct or remove these vertices.")
     if not keep.all():
         if is_modelled:
@@ -81,4 +80,4 @@ def _slots(mesh: bpy.types.Mesh, count: int) -> np.ndarray | None:
 
 def _all_placed(vertices: np.ndarray) -> bool:
     # NaN makes both comparisons false.
-    return bool(vertices.min() > -COORDINATE_LIMIT and vertices.max() < COORDINATE_LIMIT)
+    return bool(vertices.min() > -MAX_COORDINATE and vertices.max() < MAX_COORDINATE)

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 from mathutils import Matrix
-from photon_maps_native.scene_data import Instances, Light, Mesh, SceneData
+from photon_maps_native.scene_data import MAX_COORDINATE, Instances, Light, Mesh, SceneData
 
 from ..messages import Messages
 from .camera import read_camera
 from .light import read_light
 from .material import MaterialTable
-from .mesh import COORDINATE_LIMIT, read_mesh
+from .mesh import read_mesh
 from .world import read_world
 
 #: Objects that have nothing to show, or show it through the mesh that the depsgraph lists beside them:
@@ -34,6 +34,7 @@ LEFT_OUT = {
 #: Ray visibility that diffuse surfaces would have to honour; the other flags speak of rays that are not there.
 VISIBILITY = {"visible_camera": "the camera", "visible_diffuse": "diffuse light", "visible_shadow": "shadow rays"}
 ROLES = {"is_holdout": "a holdout", "is_shadow_catcher": "a shadow catcher"}
+CLEAR_TRANSFORM = "Clear its location, rotation and scale."
 #: Instances between two looks at Esc.
 CANCEL_INTERVAL = 256
 
@@ -115,7 +116,10 @@ def _add_object(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
 
 
 def _add_light(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
-    if not _placed(np.array(matrix)[None], [object.name], rows.messages)[0]:
+    place = np.array(matrix)
+    # NaN makes the comparison false.
+    if not (np.abs(place) < MAX_COORDINATE).all() or np.linalg.det(place[:3, :3]) == 0.0:
+        rows.messages.add(object.name, "is a lamp without a usable place or scale; it is left out.", CLEAR_TRANSFORM)
         return
     light = read_light(object, matrix, rows.messages)
     if light is not None:
@@ -161,28 +165,26 @@ def _first_slot(rows: _Rows, object: bpy.types.Object, slot_count: int) -> int:
 
 
 def _instances(rows: _Rows) -> Instances:
-    matrices = np.array(rows.transforms, dtype=np.float64).reshape(-1, 4, 4)
-    keep = _placed(matrices, rows.names, rows.messages)
+    matrices = np.array(rows.transforms, dtype=np.float64).reshape(-1, 4, 4)[:, :3]
+    meshes = np.array(rows.instance_meshes, dtype=np.uint32)
+    keep = _reaches(rows.meshes, meshes, matrices) < MAX_COORDINATE  # false for NaN, too
+    for index in np.flatnonzero(~keep):
+        rows.messages.add(rows.names[index], "reaches absurdly far away, or nowhere; it is left out.", CLEAR_TRANSFORM)
     return Instances(
-        meshes=np.array(rows.instance_meshes, dtype=np.uint32)[keep],
-        transforms=matrices[keep, :3].astype(np.float32),
+        meshes=meshes[keep],
+        transforms=matrices[keep].astype(np.float32),
         first_slots=np.array(rows.first_slots, dtype=np.uint32)[keep],
         slot_materials=np.array(rows.slot_materials, dtype=np.uint32),
     )
 
 
-def _placed(matrices: np.ndarray, names: Sequence[str], messages: Messages) -> np.ndarray:
-    """Return which of the (N, 4, 4) matrices place an object somewhere, and name the others."""
-    # NaN makes the comparison false. A determinant of zero cannot be inverted, which instancing needs.
-    finite = (np.abs(matrices) < COORDINATE_LIMIT).all(axis=(1, 2))
-    placed = finite & (np.linalg.det(np.where(finite[:, None, None], matrices, 0.0)[:, :3, :3]) != 0.0)
-    for index in np.flatnonzero(~placed):
-        messages.add(
-            names[index],
-            "has a position, rotation or scale that is not finite, or a scale of zero; it is left out.",
-            "Clear its transform.",
-        )
-    return placed
+def _reaches(meshes: Sequence[Mesh], used: np.ndarray, matrices: np.ndarray) -> np.ndarray:
+    """Return the largest coordinate of each instance's bounding box in the world, or of its matrix."""
+    boxes = np.array([(m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in meshes], float).reshape(-1, 2, 3)
+    center, half = boxes.mean(axis=1)[used], np.ptp(boxes, axis=1)[used] / 2
+    middle = np.einsum("nij,nj->ni", matrices[:, :, :3], center) + matrices[:, :, 3]
+    extent = np.einsum("nij,nj->ni", np.abs(matrices[:, :, :3]), half)
+    return np.maximum((np.abs(middle) + extent).max(axis=1), np.abs(matrices).max(axis=(1, 2)))
 
 
 def _name_flags(rows: _Rows, object: bpy.types.Object) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from tests.blender.scenes import camera_above, lamp, link, material, quad
+from tests.blender.scenes import camera_above, lamp, link, material, quad, render, sun_radiance
 
 
 @pytest.fixture
@@ -152,7 +152,7 @@ def test_a_large_mesh_is_read_without_a_loop_over_its_elements(scene, exported):
 def test_bad_vertices_and_faces_are_named_and_left_out(scene, exported):
     mesh = bpy.data.meshes.new("Bad")
     good = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
-    mesh.from_pydata([*good, (math.nan, 0, 0), (1e20, 0, 0)], [], [(0, 1, 2), (0, 2, 4), (0, 2, 5), (0, 1, 1)][:3])
+    mesh.from_pydata([*good, (math.nan, 0, 0), (1e12, 0, 0)], [], [(0, 1, 2), (0, 2, 4), (0, 2, 5)])
     mesh.polygons.foreach_set("use_smooth", [True] * 3)
     link(scene, "Bad", mesh)
     flat = bpy.data.meshes.new("Line")
@@ -162,7 +162,7 @@ def test_bad_vertices_and_faces_are_named_and_left_out(scene, exported):
     data, messages = exported()
     assert len(data.meshes) == 1 and data.meshes[0].triangles.tolist() == [[0, 1, 2]]
     assert np.isfinite(data.meshes[0].vertices).all() and data.meshes[0].corner_normals is None
-    for name, text in (("Bad", "finite"), ("Bad", "2 triangles"), ("Line", "1 triangles"), ("Empty", "no faces")):
+    for name, text in (("Bad", "nowhere"), ("Bad", "2 triangles"), ("Line", "1 triangles"), ("Empty", "no faces")):
         assert any(line.startswith(name) and text in line for line in messages), messages
 
 
@@ -172,15 +172,30 @@ def test_bad_vertices_and_faces_are_named_and_left_out(scene, exported):
         Matrix.Translation((math.nan, 0, 0)),
         Matrix.Translation((math.inf, 0, 0)),
         Matrix.Translation((1e30, 0, 0)),
-        Matrix.Diagonal((1, 0, 1, 1)),
+        Matrix.Translation((9e8, 0, 0)) @ Matrix.Scale(5e8, 4),
     ],
 )
-def test_bad_transforms_are_named_and_left_out(scene, exported, matrix):
+def test_objects_that_are_nowhere_are_named_and_left_out(scene, exported, matrix):
     quad(scene, "Good")
     quad(scene, "Astray").matrix_world = matrix
     data, messages = exported()
     assert len(data.instances.meshes) == 1
-    assert any(line.startswith("Astray") and "transform" in line for line in messages), messages
+    assert any(line.startswith("Astray") and "Clear its location" in line for line in messages), messages
+
+
+def test_an_object_flattened_by_its_scale_is_rendered(scene):
+    """Scaled to nothing along one axis a square is a line, and a cube is a plane; shared and not."""
+    box = bpy.data.meshes.new("Box")
+    corners = [((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5) for i in range(8)]
+    box.from_pydata(corners, [], [(4, 5, 7, 6), (0, 2, 3, 1), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)])
+    box.materials.append(material("Grey"))
+    for index, scale in enumerate([(1, 1, 0), (1, 0, 1), (0, 0, 0)]):
+        thing = link(scene, "Flat", box)
+        thing.scale, thing.location = scale, (0.5 * index, 0, 0)
+    camera_above(scene, scale=1.0)
+    lamp(scene, "SUN", energy=1.0)
+    centre = render(scene)["Combined"][12:20, 12:20, 0]
+    assert np.allclose(centre, sun_radiance(1.0), rtol=0.02)
 
 
 def test_instances_of_collections_particles_and_faces_follow_their_parents(scene, exported):

@@ -3,6 +3,7 @@
 
 from .library import Device, NativeError, NativeRender, NativeScene, Status
 from .scene_data import (
+    MAX_COORDINATE,
     Camera,
     CameraType,
     Color,
@@ -17,6 +18,7 @@ from .scene_data import (
 )
 
 __all__ = [
+    "MAX_COORDINATE",
     "Camera",
     "CameraType",
     "Color",

@@ -14,6 +14,9 @@ import numpy as np
 
 Color = tuple[float, float, float]
 
+#: Coordinates beyond this are refused, in object space and in the world: single precision cannot bear their squares.
+MAX_COORDINATE = 1e9
+
 
 class LightType(enum.IntEnum):
     """Shapes of lights, numbered as in photon_maps.h."""

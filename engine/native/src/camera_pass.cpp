@@ -139,9 +139,12 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
     trace_path(pass, hit, sequence, sample, rays);
     if (pass.gather && pass.gather->map->size() > 0) {
         const Query query{hit.position, hit.normal, hit.shading_normal};
-        const Estimate estimate =
-            estimate_irradiance(*pass.gather->map, *pass.gather->edges, query, pass.gather->kernel);
-        sample.indirect = hit.material->albedo * estimate.irradiance / pi;
+        const PhotonGather &gather = *pass.gather;
+        const Coverage::Disc disc = gather.coverage->disc(hit, gather.kernel.radius);
+        Kernel kernel = gather.kernel;
+        kernel.radius = disc.radius;
+        const Vec3 irradiance = estimate_irradiance(*gather.map, *gather.edges, query, kernel).irradiance / disc.share;
+        sample.indirect = hit.material->albedo * irradiance / pi;
     }
     return sample;
 }

@@ -12,6 +12,7 @@
 #include <atomic>
 
 #include "camera.h"
+#include "coverage.h"
 #include "estimate.h"
 #include "film.h"
 #include "light.h"
@@ -23,6 +24,7 @@ namespace photon_maps {
 struct PhotonGather {
     const PhotonMap *map;
     const EdgeIndex *edges;
+    const Coverage *coverage;  ///< null where the map is empty
     Kernel kernel;
 };
 

@@ -63,12 +63,14 @@ void Render::render_pass(uint32_t index) {
 void Render::choose_radius() {
     const PhotonTracing tracing{0, photon_count_, settings_.max_bounces, hash(settings_.seed, photon_stream),
                                 settings_.threads};
-    first_radius_ = settings_.kernel.radius > 0 ? settings_.kernel.radius
-                                                : choose_first_radius(scene_, lights_, camera_, tracing, &cancel_);
-    if (*first_radius_ > 0) {
+    Kernel kernel = settings_.kernel;
+    if (!(kernel.radius > 0)) kernel.radius = choose_first_radius(scene_, lights_, camera_, tracing, &cancel_);
+    if (kernel.radius > 0) {
         const std::span<const FeatureEdge> edges = scene_.feature_edges();
-        edges_ = EdgeIndex({edges.begin(), edges.end()}, *first_radius_);
+        edges_ = EdgeIndex({edges.begin(), edges.end()}, kernel.radius);
+        coverage_.emplace(scene_, edges_, kernel);
     }
+    first_radius_ = kernel.radius;
 }
 
 float Render::radius_of_pass(uint32_t index) const {
@@ -111,7 +113,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
         const Stopwatch watch(spent.seconds_gather);
         Kernel kernel = settings_.kernel;
         kernel.radius = radius;
-        const PhotonGather gather{&map, &edges_, kernel};
+        const PhotonGather gather{&map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel};
         const CameraPass pass{scene_,
                               lights_,
                               camera_,
@@ -128,7 +130,8 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     // Keep the photons for those who ask, and add up what the pass took.
     const size_t photon_bytes = (photons.direct.size() + photons.indirect.size()) * sizeof(Photon);
     const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
-                          pass_film.memory_bytes() + photon_bytes + map.memory_bytes();
+                          pass_film.memory_bytes() + photon_bytes + map.memory_bytes() +
+                          (coverage_ ? coverage_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
     total.photons_emitted += needs_photons() ? photon_count_ : 0;

@@ -74,6 +74,7 @@ class Render {
     uint64_t photon_count_;
     std::optional<float> first_radius_;  ///< of pass 0, once chosen
     EdgeIndex edges_;
+    std::optional<Coverage> coverage_;  ///< made along with the first radius, if above 0
     Film film_;
     RenderStatistics statistics_;
     std::vector<Photon> direct_photons_, indirect_photons_;

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Indirect light on curved and finely bent surfaces, which fill a kernel's disc only in part, against path tracing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from photon_maps_native import LightType, Material, Mesh, SceneData
+from shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, scene, sphere
+
+from engine.passes import Pass
+from engine.settings import Integrator
+
+
+def room_with(mesh: Mesh, center: tuple[float, float, float], half_angle: float, target: object = None) -> SceneData:
+    """A room 2 m wide with a lamp at its ceiling and one small thing, which fills most of the frame."""
+    place = IDENTITY.copy()
+    place[:, 3] = center
+    light = lamp(LightType.RECTANGLE, (0.2, 0.1, 1.99), (0.2, 0.1, 0), 20.0, size=(0.6, 0.6))
+    view = camera((0, -0.95, 0.75), target or center, (32, 32), half_angle)
+    materials = [Material((0.7, 0.7, 0.7)), Material((0.6, 0.7, 0.8))]
+    return scene([box((-1, -1, 0), (1, 1, 2)), mesh], view, materials, [light], transforms=[IDENTITY, place])
+
+
+def flat(mesh: Mesh) -> Mesh:
+    """Return a mesh without its smooth shading."""
+    return replace(mesh, corner_normals=None)
+
+
+def bumpy_sphere() -> Mesh:
+    """A flat-shaded sphere with bumps of a few centimetres on a radius of 20."""
+    ball = sphere(0.2, 80)
+    n = ball.vertices / np.float32(0.2)
+    bumps = 0.012 * np.prod(np.sin(14 * n), axis=1, dtype=np.float32) + 0.005 * np.sin(37 * n[:, 0] + 1)
+    return flat(replace(ball, vertices=(ball.vertices + n * bumps[:, None]).astype(np.float32)))
+
+
+SHAPES = {"smooth": sphere(0.2, 64), "facets": flat(sphere(0.2, 12)), "bumpy": bumpy_sphere()}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_indirect_light_on_a_small_thing_is_that_of_path_tracing(name: str) -> None:
+    """Block by block; divided by whole discs of 8 cm, the small spheres' indirect light is up to a third too dark."""
+    data = room_with(SHAPES[name], (0, 0.1, 0.25), 0.17)
+    blocks = []
+    for integrator, passes in ((Integrator.PHOTON_MAP, 12), (Integrator.PATH_TRACING, 384)):
+        settings = box_filtered(integrator=integrator, photon_count=1 << 16, radius=0.08, max_bounces=64)
+        pixels = Picture(data, settings).run(passes).pixels(Pass.INDIRECT).mean(-1)
+        blocks.append(pixels[4:-4, 4:-4].reshape(3, 8, 3, 8).mean((1, 3)))
+    photons, paths = blocks
+    print(name, 100 * (photons / paths - 1), 100 * (photons.mean() / paths.mean() - 1))
+    assert photons.mean() == pytest.approx(paths.mean(), rel=0.02)
+    assert photons == pytest.approx(paths, rel=0.06)
+
+
+def test_a_fine_mesh_of_a_plane_is_as_bright_as_a_coarse_one() -> None:
+    pictures = []
+    for cells in (1, 64):
+        side = np.linspace(-0.4, 0.4, cells + 1, dtype=np.float32)
+        x, y = np.meshgrid(side, side, indexing="ij")
+        i, j = np.meshgrid(np.arange(cells), np.arange(cells), indexing="ij")
+        a = (i * (cells + 1) + j).ravel()
+        triangles = np.concatenate(
+            [np.stack([a, a + cells + 1, a + cells + 2], 1), np.stack([a, a + cells + 2, a + 1], 1)]
+        )
+        mesh = Mesh(np.stack([x, y, 0 * x], -1).reshape(-1, 3), triangles.astype(np.uint32))
+        data = room_with(mesh, (0, 0.1, 0.3), 0.3)
+        pictures.append(Picture(data, box_filtered(radius=0.08)).run(4).pixels(Pass.INDIRECT))
+    coarse, fine = pictures
+    assert fine == pytest.approx(coarse, rel=1e-3)
+
+
+def test_a_curved_surface_is_the_same_bits_for_any_number_of_threads() -> None:
+    data = room_with(SHAPES["bumpy"], (0, 0.1, 0.25), 0.17)
+    first, *others = (Picture(data, box_filtered(threads=threads)).run(2).pixels() for threads in (1, 2, 5))
+    for other in others:
+        np.testing.assert_array_equal(first, other)
