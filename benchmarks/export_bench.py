@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long a mesh of a million triangles takes to leave Blender, over the bare foreach_get calls for the same arrays."""
+"""How long a mesh of a million triangles takes to leave Blender, over bare foreach_get calls for the same arrays."""
 
 from __future__ import annotations
 
