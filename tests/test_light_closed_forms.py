@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -123,6 +124,13 @@ def disc_points(radius: float, rings: int = 12) -> np.ndarray:
     return np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle)), np.zeros((rings, 32))], -1).reshape(-1, 3)
 
 
+@cache
+def disc_irradiance(name: str, distance: float) -> tuple[float, float]:
+    """Return the radius of a disc under the lamp and the mean of the formula over it."""
+    radius = min(0.4 * distance, 0.8)
+    return radius, float(CASES[name].irradiance(distance)(disc_points(radius)).mean())
+
+
 def picture_of(case: Case, distance: float, scale: float, **settings: object) -> Picture:
     """Render a floor under the lamp, seen along a slant from beside it; the whole scene times a scale."""
     far = case.kind == LightType.SUN
@@ -159,8 +167,7 @@ def test_direct_light_of_a_plane_is_the_formula(name: str, distance: float, scal
 def test_photon_density_on_a_plane_is_the_formula(name: str, distance: float, scale: float) -> None:
     """The kernel is a flat disc, so the estimate is the mean of the formula over it."""
     case = CASES[name]
-    radius = min(0.4 * distance, 0.8)
-    expected = case.irradiance(distance)(disc_points(radius)).mean()
+    radius, expected = disc_irradiance(name, distance)
     settings = {"filter": Filter.NONE, "radius": radius * scale, "use_progressive": False, "photon_count": 1 << 17}
     picture = picture_of(case, distance, scale, max_bounces=1, **settings).run(1)
     found = picture.photon_irradiance(DIRECT_PHOTONS, np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))

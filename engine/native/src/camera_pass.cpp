@@ -138,9 +138,9 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
 
     trace_path(pass, hit, sequence, sample, rays);
     if (pass.gather && pass.gather->map->size() > 0) {
-        const Query query{hit.position, hit.normal, hit.shading_normal};
         const PhotonGather &gather = *pass.gather;
         const Coverage::Disc disc = gather.coverage->disc(hit, gather.kernel.radius);
+        const Query query{hit.position, hit.normal, hit.shading_normal, disc.share != 1};
         Kernel kernel = gather.kernel;
         kernel.radius = disc.radius;
         const Vec3 irradiance = estimate_irradiance(*gather.map, *gather.edges, query, kernel).irradiance / disc.share;

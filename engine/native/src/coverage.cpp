@@ -127,8 +127,8 @@ float Coverage::measured_share(Vec3 center, Vec3 normal, float radius) const {
         const float distance_squared = squared + height * height;
         if (!(std::abs(height) < plane_tolerance && cosine > normal_tolerance && distance_squared < 1)) continue;
 
-        // Under light that is uniform over the side seen, a tilted piece receives (1 + cosine) / 2 of what a straight
-        // one does, over an area of 1 / cosine.
+        // Of light that is uniform above the disc's plane a tilted piece receives (1 + cosine) / 2 of what a straight
+        // one does, on 1 / cosine of the area.
         covered += weight(distance_squared) * (1 + cosine) / (2 * cosine);
     }
     return whole > 0 ? covered / whole : 1;

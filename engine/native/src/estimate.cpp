@@ -88,6 +88,7 @@ class Gather {
 
         Float8 weight = kernel_.weights(distance_squared);
         if (is_smooth_) weight *= shading_weights(load(&photons_.direction[i]), query_);
+        if (query_.is_bent) mask &= dot(unpack_directions(load(&photons_.direction[i])), n) < 0;
         weight = select(mask, weight);
         red_ += weight * load(&photons_.red[i]);
         green_ += weight * load(&photons_.green[i]);

@@ -12,8 +12,9 @@ namespace photon_maps {
 /// Where irradiance is asked for.
 struct Query {
     Vec3 position;
-    Vec3 normal;          ///< unit geometric normal, on the side that is seen
-    Vec3 shading_normal;  ///< unit; equal to `normal` on a flat-shaded surface, which is faster
+    Vec3 normal;           ///< unit geometric normal, on the side that is seen
+    Vec3 shading_normal;   ///< unit; equal to `normal` on a flat-shaded surface, which is faster
+    bool is_bent = false;  ///< leaves out photons from below the tangent plane, which tilted places near p receive
 };
 
 struct Estimate {
