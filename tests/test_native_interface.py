@@ -184,6 +184,43 @@ def test_null_handles_and_pointers_are_refused() -> None:
         getattr(library.load_library(), name)(null)
 
 
+def test_negative_counts_are_refused() -> None:
+    picture = Picture(plain(), box_filtered())
+    scene_handle = NativeScene(Device(), plain())
+    number, pixel, index = ctypes.c_uint64(-1), (ctypes.c_float * 3)(0, 0, 1), ctypes.c_uint32()
+    structs = library.structs
+    mesh = {"vertices": pixel, "triangles": (ctypes.c_uint32 * 3)()}
+    tables = {name: (ctypes.c_uint32 * 1)() for name in ("meshes", "first_slots", "slot_materials")}
+    transforms = (ctypes.c_float * 12)()
+    calls = [
+        ("pm_scene_add_mesh", scene_handle, ctypes.byref(structs.PmMesh(vertex_count=-1, **mesh)), ctypes.byref(index)),
+        (
+            "pm_scene_add_mesh",
+            scene_handle,
+            ctypes.byref(structs.PmMesh(vertex_count=1, triangle_count=-1, **mesh)),
+            ctypes.byref(index),
+        ),
+        (
+            "pm_scene_set_instances",
+            scene_handle,
+            ctypes.byref(structs.PmInstances(count=-1, transforms=transforms, **tables)),
+        ),
+        (
+            "pm_scene_set_instances",
+            scene_handle,
+            ctypes.byref(structs.PmInstances(count=1, slot_material_count=-1, transforms=transforms, **tables)),
+        ),
+        ("pm_scene_set_lights", scene_handle, (structs.PmLight * 1)(), number),
+        ("pm_render_read", picture.render, 0, pixel, number),
+        ("pm_render_photons", picture.render, 0, 0, number, (structs.PmPhoton * 1)()),
+        ("pm_render_irradiance", picture.render, 0, number, pixel, pixel, pixel),
+    ]
+    for name, owner, *arguments in calls:
+        with pytest.raises(NativeError) as caught:
+            library.call(name, owner.handle, *arguments)
+        assert caught.value.status == Status.INVALID_ARGUMENT, name
+
+
 def test_a_structure_of_another_version_is_refused() -> None:
     picture = Picture(plain(), RenderSettings())
     settings_struct = library.structs.PmSettings()

@@ -254,6 +254,7 @@ pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *materials, 
     return guarded([&] {
         require_handle(scene, "scene");
         pm::require(materials || count == 0, "materials is null");
+        pm::validate_count(count, "materials");
         SceneState &state = scene->open();
         if (!state.scene.instances.empty()) throw InvalidOperation("materials are set before the instances");
         std::vector<pm::Material> converted;
@@ -269,6 +270,7 @@ pm_status pm_scene_set_lights(pm_scene *scene, const pm_light *lights, uint64_t 
     return guarded([&] {
         require_handle(scene, "scene");
         pm::require(lights || count == 0, "lights is null");
+        pm::validate_count(count, "lights");
         SceneState &state = scene->open();
         std::vector<pm::Lamp> converted;
         for (size_t i = 0; i < count; ++i) {
@@ -390,6 +392,7 @@ pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t 
     return guarded([&] {
         require_handle(render, "render");
         pm::require(count == 0 || (points && normals && irradiance), "an array of the points is null");
+        pm::validate_count(count, "points");
         const pm::PhotonMap map = render->render.map_of(render->photons(kind));
         for (uint64_t i = 0; i < count; ++i) {
             const pm::Vec3 point = vec3(points + 3 * i), normal = vec3(normals + 3 * i);

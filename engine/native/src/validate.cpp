@@ -44,9 +44,13 @@ float column_length(const float *transform, int column) {
 
 }  // namespace
 
+void validate_count(uint64_t count, const std::string &name) {
+    require(count < 0xffffffffu, "there may be at most 2^32 - 2 " + name + ", not " + std::to_string(count));
+}
+
 void validate(const pm_mesh &mesh) {
     require_struct_size(mesh.struct_size, sizeof(pm_mesh), "pm_mesh");
-    require(mesh.vertex_count < 0xffffffffu, "a mesh may have at most 2^32 - 2 vertices");
+    validate_count(mesh.vertex_count, "vertices");
     require(mesh.triangle_count < 0xffffffffu / 3, "a mesh may have at most 2^32 / 3 triangles");
     require(mesh.vertices || mesh.vertex_count == 0, "the mesh's vertices are null");
     require(mesh.triangles || mesh.triangle_count == 0, "the mesh's triangles are null");
@@ -58,7 +62,8 @@ void validate(const pm_mesh &mesh) {
 void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slots, size_t material_count) {
     require_struct_size(instances.struct_size, sizeof(pm_instances), "pm_instances");
     const size_t count = instances.count;
-    require(count < 0xffffffffu, "there may be at most 2^32 - 2 instances");
+    validate_count(count, "instances");
+    validate_count(instances.slot_material_count, "slot_materials");
     require(count == 0 || (instances.meshes && instances.transforms && instances.first_slots),
             "an array of the instances is null");
     require(instances.slot_materials || instances.slot_material_count == 0, "slot_materials is null");

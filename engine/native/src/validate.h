@@ -24,6 +24,8 @@ inline void require(bool condition, const std::string &message) {
 /// Coordinates beyond this (scene units) are refused: their squares of squares leave single precision.
 constexpr float max_coordinate = 1e9f;
 
+/// Throws InvalidArgument if there are more than 2^32 - 2 of something: so are counts that were negative.
+void validate_count(uint64_t count, const std::string &name);
 void validate(const pm_mesh &mesh);
 /// @param mesh_slots number of material slots that each mesh uses
 void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slots, size_t material_count);
