@@ -33,14 +33,17 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     except ImportError as error:
         _fail(engine, f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
         return
+    messages = Messages()
     try:
-        _render_layer(engine, depsgraph)
+        _render_layer(engine, depsgraph, messages)
     except NativeError as error:
         _fail(engine, f"The render stopped: {error}")
     except Exception as error:
         # Blender goes on after an exception as if the black picture were the render; say it in the window, too.
         _fail(engine, f"The render stopped: {type(error).__name__}: {error}")
         raise
+    finally:
+        last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, messages)
 
 
 def wanted_passes(view_layer: bpy.types.ViewLayer) -> list[PassInfo]:
@@ -53,7 +56,7 @@ def _fail(engine: bpy.types.RenderEngine, sentence: str) -> None:
     engine.report({"ERROR"}, sentence)
 
 
-def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, messages: Messages) -> None:
     from .export.scene import read_scene
     from .session import Session
 
@@ -62,7 +65,6 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
     if camera is None or camera.type != "CAMERA":  # Blender lets any object be the active camera
         _fail(engine, "The scene has no camera. Add one and make it the active camera.")
         return
-    messages = Messages()
     passes = wanted_passes(depsgraph.view_layer_eval)
     for info in passes:
         engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
@@ -80,7 +82,6 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
         picture.show(session, summary)
-    last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, messages)
     if bpy.app.background:
         sys.stdout.write(summary.line() + "\n")
         sys.stdout.flush()
@@ -141,9 +142,9 @@ def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[bool]) 
 def _tell(engine: bpy.types.RenderEngine, session: Session) -> None:
     settings, statistics = session.settings, session.statistics()
     megabytes = statistics.memory_bytes / 2**20
-    limit = f"{settings.time_limit:g} s" if settings.stop == Stop.TIME else str(settings.passes)
+    limit = f", {settings.time_limit:g} s in all" if settings.stop == Stop.TIME else f" of {settings.passes}"
     engine.update_progress(session.progress)
     engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
     engine.update_stats(
-        "", f"Pass {statistics.passes} of {limit} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
+        "", f"Pass {statistics.passes}{limit} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
     )

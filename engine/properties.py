@@ -47,7 +47,7 @@ FILTERS = _items(
 STOPS = _items(
     Stop,
     {
-        Stop.PASSES: ("Passes", "Stop after a number of passes: the same picture on every machine"),
+        Stop.PASSES: ("Passes", "Stop after a number of passes: the same picture for any number of threads"),
         Stop.TIME: ("Time", "Stop at the end of the first pass after a time: as exact as the time allows"),
     },
 )

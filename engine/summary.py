@@ -62,6 +62,6 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         radius_last=statistics.radius_last,
         peak_memory_bytes=statistics.memory_bytes,
         error_estimate=None,
-        maps=["global"] if statistics.photons_stored else [],
+        maps=["global"] if statistics.radius_first > 0 else [],
         messages=[str(message) for message in messages],
     )

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Material, Mesh, SceneData
-from shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, scene, sphere
 
 from engine.passes import Pass
 from engine.settings import Integrator
+from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, scene, sphere
 
 
 def room_with(mesh: Mesh, center: tuple[float, float, float], half_angle: float) -> SceneData:

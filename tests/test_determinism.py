@@ -76,6 +76,14 @@ def test_a_part_of_the_frame_is_the_same_as_in_the_whole() -> None:
     np.testing.assert_array_equal(Picture(part, box_filtered()).run(2).pixels(), whole[11:20, 7:27])
 
 
+def test_the_last_pass_there_is_can_be_rendered() -> None:
+    """Its radius is tiny, and known at once."""
+    picture = Picture(still_life(), box_filtered(photon_count=1000)).run(1, first=2**32 - 1)
+    statistics = picture.render.statistics()
+    first = Picture(still_life(), box_filtered(photon_count=1000)).run(1).render.statistics().radius_first
+    assert statistics.radius_last == pytest.approx(first * 2 ** (-32 / 6) / 0.9027**0.5, rel=1e-3)
+
+
 def test_a_cancelled_pass_leaves_no_trace() -> None:
     picture = Picture(still_life(), box_filtered(photon_count=1 << 20))
     picture.run(1)

@@ -85,6 +85,20 @@ def test_white_sky_makes_a_white_object_vanish(integrator: Integrator) -> None:
     assert pixels.mean() == pytest.approx(1, rel=0.005)
 
 
+@pytest.mark.parametrize("is_smooth", [False, True])
+def test_many_bounces_in_a_sphere_keep_their_energy(is_smooth: bool) -> None:
+    """Nine tenths of the light is indirect; smooth shading normals must not cost any of it, bounce by bounce."""
+    albedo, power, radius = 0.9, 50.0, 1.5
+    mesh = sphere(radius, 48)
+    if not is_smooth:
+        mesh.corner_normals = None
+    light = lamp(LightType.POINT, (0, 0, 0), (0, 0, -1), power)
+    view = camera((0.2, 0.1, 0.3), (1, 0.4, 0.2), (32, 32), half_angle=0.6)
+    picture = Picture(scene([mesh], view, [Material((albedo,) * 3)], [light]), box_filtered(max_bounces=512)).run(16)
+    direct = albedo / np.pi * power / (4 * np.pi * radius**2)
+    assert picture.pixels(Pass.INDIRECT).mean() == pytest.approx(direct * albedo / (1 - albedo), rel=0.01)
+
+
 @pytest.mark.parametrize("integrator", list(Integrator))
 def test_inside_of_a_sphere_with_a_lamp_at_its_centre(integrator: Integrator) -> None:
     """Irradiance power / (4 pi R2) from the lamp, times 1 / (1 - rho) with all bounces; direct light is the first."""

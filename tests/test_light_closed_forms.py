@@ -174,6 +174,40 @@ def test_photon_density_on_a_plane_is_the_formula(name: str, distance: float, sc
     assert found.mean() == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.parametrize("spread", [np.pi, 1.0, 0.1, 0.02])
+@pytest.mark.parametrize("kind", [LightType.RECTANGLE, LightType.ELLIPSE])
+def test_spread_keeps_the_flux(kind: LightType, spread: float) -> None:
+    """However narrow the beam: all of the lamp's power leaves it, and lands on a floor wide enough."""
+    light = lamp(kind, (0, 0, 1), (0, 0, 0), POWER, size=(0.5, 0.5), spread=spread)
+    data = scene([quad((0, 0, 0), (500, 0, 0), (0, 500, 0))], camera((0, -3, 3), (0, 0, 0), (4, 4)), lights=[light])
+    found = Picture(data, box_filtered(photon_count=1 << 18, radius=1.0, max_bounces=1)).run(1).render.statistics()
+    assert found.emitted == pytest.approx([POWER] * 3, rel=0.005)
+
+
+def test_a_visible_sun_is_seen_beyond_the_clip_end() -> None:
+    light = lamp(LightType.SUN, (0, 0, 1), (0, 0, 0), 3.0, size=(0.2, 0), visible_to_camera=True)
+    view = replace(camera((0, 0, 0), (0, 0, 1), (8, 8), 0.01), clip_end=10.0)
+    pixels = Picture(scene([], view, lights=[light]), box_filtered()).run(1).pixels()
+    assert pixels == pytest.approx(np.full((8, 8, 3), 3.0 / (np.pi * np.sin(0.1) ** 2)), rel=1e-4)
+
+
+def test_instances_of_a_mesh_far_from_its_origin_are_lit_as_one_that_is_not() -> None:
+    """Rounding in object space must not let a surface shade itself."""
+    far, floor = 1000.0, quad((1000.0, 1000.0, 1000.0), (1, 0, 0), (0, 1, 0))
+    moved = np.eye(3, 4, dtype=np.float32)
+    moved[:, 3] = -far
+    beside = moved.copy()
+    beside[0, 3] += 5
+    light = lamp(LightType.POINT, (0, 0, 2), (0, 0, 0), POWER)
+    data = scene([floor], camera((0, -1, 3), (0, 0, 0), (32, 32), 0.1), lights=[light])
+    instances = replace(data.instances, meshes=np.zeros(2, np.uint32), transforms=np.stack([moved, beside]))
+    data = replace(data, instances=replace(instances, first_slots=np.zeros(2, np.uint32)))
+    near = scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], data.camera, lights=[light])
+    far_pixels, near_pixels = (Picture(d, box_filtered(max_bounces=0)).run(8).pixels(Pass.DIRECT) for d in (data, near))
+    assert far_pixels.min() > 0
+    assert far_pixels == pytest.approx(near_pixels, rel=0.01)
+
+
 def test_a_slanted_sun_lights_by_the_cosine() -> None:
     direction = np.array([3.0, 0.0, 4.0])  # cosine 0.8
     light = lamp(LightType.SUN, direction, (0, 0, 0), POWER)

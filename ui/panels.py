@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from importlib.util import find_spec
 
 import bpy
@@ -119,13 +120,20 @@ class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
         messages = last_render.recall(context.scene.session_uid, context.view_layer.name)
         column = self.layout.column()
         if not messages:
-            column.label(text="The last render has none.")
+            column.label(text="None.")
         for message in messages:
             box = column.box().column(align=True)
             box.label(text=message.object, icon="INFO")
-            box.label(text=f"{message.text}{f' ({message.count} times)' if message.count > 1 else ''}")
-            if message.advice:
-                box.label(text=message.advice)
+            times = f" ({message.count} times)" if message.count > 1 else ""
+            for line in textwrap.wrap(f"{message.text}{times} {message.advice}", _line_length(context)):
+                box.label(text=line)
+
+
+def _line_length(context: bpy.types.Context) -> int:
+    """Return how many letters fit the region's width; Blender's labels do not wrap."""
+    letter_width = 7.5 * context.preferences.system.ui_scale
+    region_width = context.region.width if context.region else 300
+    return max(20, int((region_width - 60) / letter_width))
 
 
 class PHOTON_MAPS_PT_passes(_Panel, bpy.types.Panel):

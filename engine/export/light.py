@@ -8,14 +8,18 @@ import math
 import bpy
 import numpy as np
 from mathutils import Matrix
-from photon_maps_native.scene_data import Light, LightType
+from photon_maps_native.scene_data import MAX_RADIANCE, Light, LightType
 
 from ..messages import Messages
-from .material import TARGET
+from .material import TARGET, checked
 from .nodes import ConstantReader, Port, source
 
 #: What sheared or stretched lamps may be off a right angle or a circle before it is named.
 SHAPE_TOLERANCE = 1e-3
+
+#: Sides of area lamps below this (metres) are none.
+LEAST_SIZE = 1e-12
+LEAST_SPOT_ANGLE = 1e-3
 
 AREA_TYPES = {
     "SQUARE": LightType.RECTANGLE,
@@ -43,6 +47,11 @@ def read_light(lamp: bpy.types.Object, matrix: Matrix, messages: Messages) -> Li
     rotation, scale = _rigid(columns[:, :3], lamp.name, data.type, messages)
     transform = np.column_stack((rotation, columns[:, 3])).astype(np.float32)
     shape = _SHAPES[data.type](data, scale)
+    if data.type == "AREA" and not min(shape["size"]) > LEAST_SIZE:
+        messages.add(
+            lamp.name, "is an area lamp without a size; it is left out.", "Give it a size and a scale above zero."
+        )
+        return None
     if not getattr(data, "normalize", True):  # power or irradiance is given for each unit of the lamp's area
         power *= _area(shape)
     return Light(
@@ -65,14 +74,7 @@ def _power(data: bpy.types.Light, messages: Messages) -> np.ndarray:
         power *= np.array(data.temperature_color)
     if data.use_nodes and data.node_tree:
         power *= _node_emission(data, messages)
-    if not (np.isfinite(power).all() and (power >= 0.0).all()):
-        messages.add(
-            data.name,
-            "has a power that is negative or not finite; it is clamped to zero.",
-            "Correct its power and colour.",
-        )
-        power = np.maximum(np.nan_to_num(power, nan=0.0, posinf=0.0, neginf=0.0), 0.0)
-    return power
+    return np.array(checked(power, MAX_RADIANCE, data.name, "power", messages))
 
 
 def _node_emission(data: bpy.types.Light, messages: Messages) -> np.ndarray:
@@ -144,7 +146,7 @@ def _spot(data: bpy.types.SpotLight, scale: np.ndarray) -> dict:
     edge, full = _scaled_cone(outer, width), _scaled_cone(inner, width)
     return _point(data, scale) | {
         "type": LightType.SPOT,
-        "spot_angle": 2.0 * math.acos(edge),
+        "spot_angle": max(2.0 * math.acos(edge), LEAST_SPOT_ANGLE),
         "spot_blend": min((full - edge) / (1.0 - edge), 1.0),
     }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
-from photon_maps_native.scene_data import Color, Material
+from photon_maps_native.scene_data import MAX_RADIANCE, Color, Material
 
 from ..messages import Messages
 from .nodes import ConstantReader, Port, shader_tree, source
@@ -54,7 +54,7 @@ def read_material(material: bpy.types.Material, messages: Messages) -> Material:
     """Fold a material; what it cannot hold is named in the messages."""
     tree = shader_tree(material)
     if tree is None:
-        return Material(albedo=_checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages))
+        return Material(albedo=checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages))
     output = tree.get_output_node(TARGET)
     if output is None:
         messages.add(material.name, "has no Material Output node, so it is black.", "Add a Material Output.")
@@ -65,16 +65,17 @@ def read_material(material: bpy.types.Material, messages: Messages) -> Material:
             messages.add(material.name, f"has a {name.lower()}, which is left out.")
     surface = fold(reader, Port(output.inputs["Surface"]))
     return Material(
-        albedo=_checked(surface.diffuse, 1.0, material.name, "diffuse colour", messages),
-        emission=_checked(surface.emission, np.inf, material.name, "emission", messages),
+        albedo=checked(surface.diffuse, 1.0, material.name, "diffuse colour", messages),
+        emission=checked(surface.emission, MAX_RADIANCE, material.name, "emission", messages),
     )
 
 
-def _checked(value: np.ndarray, maximum: float, owner: str, meaning: str, messages: Messages) -> Color:
+def checked(value: np.ndarray, maximum: float, owner: str, meaning: str, messages: Messages) -> Color:
+    """Return a colour of numbers between 0 and a maximum; what was not is named."""
     clamped = np.clip(np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0), 0.0, maximum)
     if not np.array_equal(clamped, value):
-        limits = f"between 0 and {maximum:g}" if np.isfinite(maximum) else "finite and not negative"
-        messages.add(owner, f"has a {meaning} that is not {limits}; it is clamped.", "Correct the colour or strength.")
+        text = f"has a {meaning} that is not between 0 and {maximum:g}; it is clamped."
+        messages.add(owner, text, "Correct the colour or strength.")
     return tuple(float(channel) for channel in clamped)
 
 

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import bpy
-from photon_maps_native.scene_data import Color
+from photon_maps_native.scene_data import MAX_RADIANCE, Color
 
 from ..messages import Messages
-from .material import TARGET
+from .material import TARGET, checked
 from .nodes import ConstantReader, Port, shader_tree, source
 
 BLACK = (0.0, 0.0, 0.0)
@@ -37,4 +37,4 @@ def read_world(world: bpy.types.World | None, messages: Messages) -> Color:
         )
         return BLACK
     radiance = reader.color(port.input("Color")) * reader.number(port.input("Strength"))
-    return tuple(float(max(channel, 0.0)) for channel in radiance)
+    return checked(radiance, MAX_RADIANCE, world.name, "radiance", messages)

@@ -9,7 +9,7 @@ import pytest
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Euler, Matrix, Vector
 
-from tests.blender.scenes import lamp, link, messages, quad, render, use_nodes
+from tests.blender.scenes import camera_above, lamp, link, messages, quad, render, use_nodes
 
 #: Three small shining squares, one a channel of colour.
 PLACES = (Vector((-0.8, -0.5, -4.0)), Vector((0.9, -0.3, -5.0)), Vector((-0.2, 0.6, -4.5)))
@@ -158,3 +158,20 @@ def test_the_film_is_transparent_where_nothing_is(marked):
     marked.render.film_transparent = False
     picture = render(marked)["Combined"]
     assert picture[..., 3].min() == 1.0 and picture[0, 0, 0] > 0.0
+
+
+@pytest.mark.parametrize("pixel_filter", ["BLACKMAN_HARRIS", "GAUSSIAN"])
+def test_pixel_filters_are_as_wide_as_those_of_cycles(scene, pixel_filter):
+    """The profile of an edge, at the default width."""
+    shining = quad(scene, "Shining", Matrix.Translation((2.0, 0.0, 0.0)), half=2.0, emission=(1.0, 1.0, 1.0))
+    shining.data.materials[0].node_tree.nodes["Emission"].inputs["Strength"].default_value = 1.0
+    camera_above(scene, scale=1.0)
+    settings = scene.photon_maps
+    settings.passes, settings.pixel_filter, settings.pixel_filter_width = 256, pixel_filter, 1.5
+    profile = render(scene)["Combined"][..., 0].mean(axis=0)
+    scene.render.engine, cycles = "CYCLES", scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.pixel_filter_type, cycles.filter_width = pixel_filter, 1.5
+    expected = render(scene)["Combined"][..., 0].mean(axis=0)
+    assert 0.01 < expected[15] < 0.49  # the edge lies between the pixels 15 and 16
+    np.testing.assert_allclose(profile, expected, atol=0.01)

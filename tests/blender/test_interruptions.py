@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import time
-
 import bpy
 import pytest
 
@@ -24,13 +22,13 @@ class Watched:
     def __init__(self, engine, after=None):
         self._engine = engine
         self._after = after
-        self.polls = []
+        self.polls = 0
 
     def __getattr__(self, name):
         return getattr(self._engine, name)
 
     def test_break(self):
-        self.polls.append(time.monotonic())
+        self.polls += 1
         return self._after is not None and self._after(self)
 
 
@@ -60,7 +58,7 @@ def test_esc_keeps_the_passes_done(corner, watch):
     corner.photon_maps.passes = 1_000_000
     corner.photon_maps.use_auto = False
     corner.photon_maps.photon_count = 1000
-    engines = watch(lambda engine: len(engine.polls) > 20)
+    engines = watch(lambda engine: engine.polls > 20)
     passes, summary = render_with_summary(corner)
     assert 1 <= summary["passes"] < 1_000_000
     assert passes["Combined"].shape == expected.shape and passes["Combined"][..., :3].max() > 0.0
@@ -83,24 +81,16 @@ def test_esc_ends_the_reading_of_a_large_scene(corner, watch, monkeypatch):
     monkeypatch.setattr(Session, "__init__", None)  # must not be reached
     engines = watch(lambda engine: True)
     bpy.ops.render.render()
-    assert len(engines[0].polls) == 1
+    assert engines[0].polls == 1
 
 
 def test_esc_cancels_a_running_pass(corner, watch):
     """A pass of half a billion photons would run for minutes."""
     corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
     corner.photon_maps.radius = 0.1
-    engines = watch(lambda engine: len(engine.polls) > 5)
+    engines = watch(lambda engine: engine.polls > 5)
     _, summary = render_with_summary(corner)
-    assert summary["passes"] == 0 and len(engines[0].polls) > 5
-
-
-def test_esc_is_looked_for_all_the_time(corner, watch):
-    """By the number of looks, not by a clock: one pass of a second means dozens of them."""
-    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 500_000_000
-    engines = watch(lambda engine: len(engine.polls) > 1 and engine.polls[-1] - engine.polls[0] > 1.0)
-    render_with_summary(corner)
-    assert len(engines[0].polls) > 20
+    assert summary["passes"] == 0 and engines[0].polls > 5
 
 
 def test_a_failing_helper_is_reported(corner, monkeypatch):

@@ -4,6 +4,7 @@
 from .library import Device, NativeError, NativeRender, NativeScene, Status
 from .scene_data import (
     MAX_COORDINATE,
+    MAX_RADIANCE,
     Camera,
     CameraType,
     Color,
@@ -19,6 +20,7 @@ from .scene_data import (
 
 __all__ = [
     "MAX_COORDINATE",
+    "MAX_RADIANCE",
     "Camera",
     "CameraType",
     "Color",

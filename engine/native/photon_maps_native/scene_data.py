@@ -16,6 +16,8 @@ Color = tuple[float, float, float]
 
 #: Coordinates beyond this are refused, in object space and in the world: single precision cannot bear their squares.
 MAX_COORDINATE = 1e9
+#: Radiance and power beyond this are refused.
+MAX_RADIANCE = 1e15
 
 
 class LightType(enum.IntEnum):

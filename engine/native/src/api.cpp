@@ -18,7 +18,6 @@ struct SceneState {
     explicit SceneState(std::shared_ptr<const pm::Embree> embree) : scene(std::move(embree)) {}
 
     pm::Scene scene;
-    std::vector<uint32_t> mesh_slots;  // material slots that each mesh uses
     std::vector<pm::Lamp> lamps;
     pm::Vec3 world;
     std::unique_ptr<pm::Lights> lights;  // once frozen
@@ -109,11 +108,15 @@ pm::Lamp to_lamp(const pm_light &source) {
     lamp.type = static_cast<pm::LightType>(source.type);
     lamp.transform = pm::Transform::from_rows(source.transform);
     lamp.power = vec3(source.power);
-    lamp.width = source.size[0];
+    // A size whose square drowns is none.
+    constexpr float least_size = 1e-12f;
+    const bool is_area = source.type == PM_LIGHT_RECTANGLE || source.type == PM_LIGHT_ELLIPSE;
+    lamp.width = is_area || source.size[0] >= least_size ? source.size[0] : 0;
     lamp.height = source.size[1];
     lamp.spot_angle = source.spot_angle;
     lamp.spot_blend = source.spot_blend;
-    lamp.spread = source.spread;
+    // Less than a degree is noise without end; Cycles stops there, too.
+    lamp.spread = std::max(source.spread, pm::pi / 180);
     lamp.soft_falloff = source.soft_falloff != 0;
     lamp.visible_to_camera = source.visible_to_camera != 0;
     return lamp;
@@ -227,8 +230,9 @@ pm_status pm_scene_add_mesh(pm_scene *scene, const pm_mesh *mesh, uint32_t *inde
             pm::require(largest < 0xffffffffu, "slots: 2^32 - 1 is no material slot");
             slots = largest + 1;
         }
-        state.mesh_slots.push_back(slots);
-        state.scene.meshes.push_back(to_mesh(*mesh));
+        pm::Mesh copy = to_mesh(*mesh);
+        copy.slot_count = slots;
+        state.scene.meshes.push_back(std::move(copy));
         *index = static_cast<uint32_t>(state.scene.meshes.size() - 1);
     });
 }
@@ -238,7 +242,9 @@ pm_status pm_scene_set_instances(pm_scene *scene, const pm_instances *instances)
         require_handle(scene, "scene");
         require_handle(instances, "instances");
         SceneState &state = scene->open();
-        pm::validate(*instances, state.mesh_slots, state.scene.materials.size());
+        std::vector<uint32_t> mesh_slots;
+        for (const pm::Mesh &mesh : state.scene.meshes) mesh_slots.push_back(mesh.slot_count);
+        pm::validate(*instances, mesh_slots, state.scene.materials.size());
         std::vector<pm::Instance> placed;
         placed.reserve(instances->count);
         for (size_t i = 0; i < instances->count; ++i)
@@ -396,7 +402,8 @@ pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t 
         const pm::PhotonMap map = render->render.map_of(render->photons(kind));
         for (uint64_t i = 0; i < count; ++i) {
             const pm::Vec3 point = vec3(points + 3 * i), normal = vec3(normals + 3 * i);
-            pm::require(pm::is_finite(point), "point " + std::to_string(i) + " is not finite");
+            pm::require(pm::is_finite(point) && pm::max_component(pm::abs(point)) <= pm::max_coordinate,
+                        "point " + std::to_string(i) + " is not finite or beyond 1e9");
             pm::require(std::abs(pm::length(normal) - 1) < 1e-3f, "normal " + std::to_string(i) + " is no unit vector");
             const pm::Vec3 e = render->render.irradiance(map, point, normal);
             irradiance[3 * i] = e.x;

@@ -5,13 +5,19 @@ namespace photon_maps {
 
 namespace {
 
-/// The filters as Blender's Cycles defines them, at t in [-1/2, 1/2] of the width.
+/// How far a filter reaches, in its width, as Blender's Cycles has them: the width of the curved ones is that of
+/// what they weigh most.
+double support(PixelFilter filter) {
+    return filter == PixelFilter::gaussian ? 3 : filter == PixelFilter::blackman_harris ? 2 : 1;
+}
+
+/// The filters at t in [-1/2, 1/2] of their support.
 double filter_weight(PixelFilter filter, double t) {
     switch (filter) {
         case PixelFilter::box:
             return 1;
         case PixelFilter::gaussian:
-            return std::exp(-18 * t * t);  // three standard deviations to the edge
+            return std::exp(-72 * t * t);  // exp(-8 (x / width)^2) over three widths
         case PixelFilter::blackman_harris: {
             const double phase = 2 * std::numbers::pi * (t + 0.5);  // Harris 1978
             return 0.35875 - 0.48829 * std::cos(phase) + 0.14128 * std::cos(2 * phase) - 0.01168 * std::cos(3 * phase);
@@ -34,7 +40,8 @@ PixelSampler::PixelSampler(PixelFilter filter, float width) {
         while (at < fine && cumulative[at + 1] < target) ++at;
         const double step = cumulative[std::min(at + 1, fine)] - cumulative[at];
         const double t = static_cast<double>(at) + (step > 0 ? (target - cumulative[at]) / step : 0);
-        inverse_[i] = static_cast<float>((std::min(t / fine, 1.0) - 0.5) * static_cast<double>(width));
+        inverse_[i] =
+            static_cast<float>((std::min(t / fine, 1.0) - 0.5) * support(filter) * static_cast<double>(width));
     }
 }
 

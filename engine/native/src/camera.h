@@ -17,7 +17,8 @@ enum class PixelFilter : uint32_t { box = 0, gaussian = 1, blackman_harris = 2 }
 /// depends on no other (Ernst et al. 2006, filter importance sampling).
 class PixelSampler {
   public:
-    /// @param width full width of the filter in pixels, > 0
+    /// @param width of the filter in pixels as Blender gives it, > 0; Blackman-Harris reaches over two, a Gaussian
+    /// over three
     PixelSampler(PixelFilter filter, float width);
 
     Vec2 sample(float u, float v) const { return {offset(u), offset(v)}; }

@@ -112,7 +112,7 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
     // A lamp in front of the surface hides it.
     Ray until_hit = ray;
     if (met) until_hit.far = hit.distance;
-    if (const auto lamp = pass.lights.seen(until_hit)) {
+    if (const auto lamp = pass.lights.seen(until_hit, !met)) {
         sample.emission = lamp->first;
         if (!std::isinf(lamp->second)) {
             sample.depth = lamp->second;
@@ -161,9 +161,12 @@ uint64_t render_camera_pass(const CameraPass &pass, Film &film, const std::atomi
         const auto x0 = static_cast<uint32_t>(tile % tiles_x) * tile_size;
         const auto y0 = static_cast<uint32_t>(tile / tiles_x) * tile_size;
         uint64_t tile_rays = 0;
-        for (uint32_t y = y0; y < std::min(y0 + tile_size, camera.height); ++y)
-            for (uint32_t x = x0; x < std::min(x0 + tile_size, camera.width); ++x)
+        for (uint32_t y = y0; y < std::min(y0 + tile_size, camera.height); ++y) {
+            for (uint32_t x = x0; x < std::min(x0 + tile_size, camera.width); ++x) {
+                throw_if_cancelled(cancel);
                 film.set(size_t{y} * camera.width + x, render_pixel(pass, camera.x + x, camera.y + y, tile_rays));
+            }
+        }
         rays += tile_rays;
     });
     return rays;

@@ -84,6 +84,15 @@ EdgeIndex::EdgeIndex(std::vector<FeatureEdge> edges, float max_radius)
     });
 }
 
+double EdgeIndex::crowding() const {
+    double squares = 0;
+    for (size_t bucket = 0; bucket + 1 < starts_.size(); ++bucket) {
+        const double size = starts_[bucket + 1] - starts_[bucket];
+        squares += size * size;
+    }
+    return entries_.empty() ? 0 : squares / static_cast<double>(entries_.size());
+}
+
 size_t EdgeIndex::memory_bytes() const {
     return edges_.size() * sizeof(FeatureEdge) + (starts_.size() + entries_.size()) * sizeof(uint32_t);
 }

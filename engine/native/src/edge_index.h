@@ -33,6 +33,9 @@ class EdgeIndex {
     float max_radius() const { return max_radius_; }
     size_t memory_bytes() const;
 
+    /// Returns how many candidates lookup() gives near edges, on average over the edges' own cells.
+    double crowding() const;
+
   private:
     int64_t cell_of(double coordinate) const { return static_cast<int64_t>(std::floor(coordinate * inverse_cell_)); }
 

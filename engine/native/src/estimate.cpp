@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "material.h"
+
 namespace photon_maps {
 
 namespace {
@@ -34,12 +36,12 @@ struct Vec3x8 {
 /// by the cosine to the surface as it is and should bring it by that to the surface as it is shaded (Veach 1997,
 /// section 5.3); none from below the latter.
 [[gnu::always_inline]] inline Float8 shading_weights(Int8 packed_directions, const Query &query) {
-    // A photon that grazes the surface would weigh without bound. Those below 6 degrees bring 1 % of a uniform sky's
-    // light, so a bound there costs next to no accuracy and keeps single photons from showing as spots.
-    constexpr float least_cosine = 0.1f;
+    // The ratio is bounded as shading_ratio's; the least cosine only keeps the division finite.
+    constexpr float least_cosine = 1e-6f;
     const Vec3x8 travel = unpack_directions(packed_directions);
     const Float8 geometric = max(-dot(travel, query.normal), broadcast(least_cosine));
-    return max(-dot(travel, query.shading_normal), Float8{}) / geometric;
+    const Float8 ratio = max(-dot(travel, query.shading_normal), Float8{}) / geometric;
+    return min(ratio, broadcast(max_shading_ratio));
 }
 
 struct Sum {
@@ -109,8 +111,15 @@ class Gather {
 
 }  // namespace
 
-Estimate estimate_irradiance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel) {
-    const KernelRegion region(edges, query.position, query.normal, kernel);
+Estimate estimate_irradiance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &asked) {
+    // Among very many edges, such as those of leaves, a smaller disc meets few enough.
+    constexpr int most_halvings = 16;
+    Kernel kernel = asked;
+    KernelRegion region(edges, query.position, query.normal, kernel);
+    for (int halving = 0; region.is_crowded() && halving < most_halvings; ++halving) {
+        kernel.radius /= 2;
+        region = KernelRegion(edges, query.position, query.normal, kernel);
+    }
     const Sum sum = vectorized([&] {
         Gather gather(map.photons(), query, kernel, region.barriers());
         map.visit_range(query.position, kernel.radius, gather);

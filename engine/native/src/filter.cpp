@@ -11,7 +11,7 @@ float Kernel::wedge(float s) const {
         case PM_FILTER_NONE:
             return s2 / 2;
         case PM_FILTER_CONE:
-            return s2 / 2 - s2 * s / (3 * cone_k * radius);
+            return s2 * (0.5f - s / radius / (3 * cone_k));
         case PM_FILTER_GAUSSIAN: {
             const double r2 = static_cast<double>(radius) * radius;
             const double exponent = gaussian_beta * s2 / (2 * r2);
@@ -19,7 +19,7 @@ float Kernel::wedge(float s) const {
                 gaussian_alpha * ((1 - gaussian_c) * s2 / 2 - gaussian_c * r2 / gaussian_beta * std::expm1(-exponent)));
         }
         case PM_FILTER_EPANECHNIKOV:
-            return s2 / 2 - s2 * s2 / (4 * radius * radius);
+            return s2 * (0.5f - s2 / (radius * radius) / 4);
     }
     return 0;
 }

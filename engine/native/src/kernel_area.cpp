@@ -231,6 +231,11 @@ KernelRegion::KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Ke
         const Double3 a = exact_difference(edge.a, p), b = exact_difference(edge.b, p);
         if (!bounds_surface(a, b, normal, radius)) continue;
         add_barrier(project(a), project(b), tolerance, barriers_);
+        if (barriers_.size() > max_barriers) {
+            barriers_.clear();
+            is_crowded_ = true;
+            return;
+        }
     }
     measure(kernel);
 }

@@ -33,6 +33,9 @@ struct Barrier {
 /// the share: numerator and denominator cover the same region, so a barrier too many costs variance but no bias.
 class KernelRegion {
   public:
+    /// Measuring takes time by their square.
+    static constexpr size_t max_barriers = 64;
+
     /// Cuts the disc of radius kernel.radius around p by the edges that bound p's surface: those whose closest
     /// point lies within the radius of p and near p's tangent plane and whose face is parallel to it, on either
     /// side, so that what stands on the surface counts too.
@@ -46,6 +49,9 @@ class KernelRegion {
     /// Share of the kernel's integral that remains: above 0, up to 1.
     float share() const { return share_; }
 
+    /// Whether there are too many barriers to measure: the region then is the whole disc, for a smaller one is better.
+    bool is_crowded() const { return is_crowded_; }
+
     /// The barriers within the disc; coordinates are along Frame(normal).x and .y.
     std::span<const Barrier> barriers() const { return barriers_; }
 
@@ -54,6 +60,7 @@ class KernelRegion {
 
     std::vector<Barrier> barriers_;
     float share_ = 1;
+    bool is_crowded_ = false;
 };
 
 }  // namespace photon_maps

@@ -57,15 +57,18 @@ float attenuation(const Lamp &lamp, Vec3 direction) {
 /// Radiant intensity of a point or spot lamp on its axis, W/sr.
 Vec3 intensity(const Lamp &lamp) { return lamp.power / (4 * pi); }
 
-/// Radiance of an area lamp under the angle to its normal whose cosine is given: power / (pi area), narrowed by
-/// the spread as by the slats of a soft box, (tan h - tan a) / (tan h - h) with h half the spread: flux is kept.
-Vec3 area_radiance(const Lamp &lamp, float cosine) {
+/// Radiance of an area lamp at an angle to its normal whose tangent is given: power / (pi area), narrowed by the
+/// spread as by the slats of a soft box, (tan h - tan a) / (tan h - h) with h half the spread: flux is kept.
+Vec3 area_radiance(const Lamp &lamp, float tangent) {
     const Vec3 full = lamp.power / (pi * area(lamp));
     if (lamp.spread >= pi) return full;
-    const float half = lamp.spread / 2;
-    const float tangent = std::sqrt(std::max(0.0f, 1 - cosine * cosine)) / cosine;
-    return full * std::max(0.0f, (std::tan(half) - tangent) / (std::tan(half) - half));
+    const double half = static_cast<double>(lamp.spread) / 2;  // tan h - h cancels to h^3 / 3
+    const double slats = (std::tan(half) - static_cast<double>(tangent)) / (std::tan(half) - half);
+    return full * static_cast<float>(std::max(0.0, slats));
 }
+
+/// Tangent of the angle between unit vectors, exact for small angles too.
+float tangent_between(Vec3 a, Vec3 b) { return length(cross(a, b)) / dot(a, b); }
 
 std::optional<LightSample> sample_point(const Lamp &lamp, Vec3 position, float u, float v) {
     const Vec3 to_center = lamp.transform.origin - position;
@@ -122,7 +125,8 @@ std::optional<LightSample> sample_area(const Lamp &lamp, Vec3 position, float u,
     const float cosine = dot(direction, z);
     if (!(cosine > 0)) return {};
     if (by_area) solid_angle = area(lamp) * cosine / squared;
-    return LightSample{direction, distance * shadow_end, area_radiance(lamp, cosine) * solid_angle, 0};
+    return LightSample{direction, distance * shadow_end,
+                       area_radiance(lamp, tangent_between(direction, z)) * solid_angle, 0};
 }
 
 PhotonEmission emit_from_point(const Lamp &lamp, const std::array<float, 4> &u) {
@@ -149,9 +153,10 @@ PhotonEmission emit_from_area(const Lamp &lamp, const std::array<float, 4> &u) {
     // Cosine-distributed within the spread; what varies in the radiance goes into the flux.
     const float sine = lamp.spread >= pi ? 1 : std::sin(lamp.spread / 2);
     const Vec2 d = sample_disk(u[0], u[1]);
-    const float cosine = std::sqrt(std::max(1e-12f, 1 - sine * sine * (d.x * d.x + d.y * d.y)));
+    const float squared = sine * sine * (d.x * d.x + d.y * d.y);
+    const float cosine = std::sqrt(std::max(1e-12f, 1 - squared));
     const Vec3 direction = x * (sine * d.x) + y * (sine * d.y) - z * cosine;
-    const Vec3 flux = area_radiance(lamp, cosine) * (pi * sine * sine * area(lamp));
+    const Vec3 flux = area_radiance(lamp, std::sqrt(squared) / cosine) * (pi * sine * sine * area(lamp));
     // A lamp in the plane of a ceiling shines off it, not into it.
     const Vec3 nudge = direction * (max_component(abs(origin)) * 8 * std::numeric_limits<float>::epsilon());
     return {{origin + nudge, direction}, flux, {}};
@@ -215,7 +220,7 @@ std::optional<std::pair<Vec3, float>> intersect_lamp(const Lamp &lamp, const Ray
         const float v = 2 * dot(p, normalize(lamp.transform.y)) / lamp.height;
         const bool inside = lamp.type == LightType::ellipse ? u * u + v * v <= 1 : std::abs(u) <= 1 && std::abs(v) <= 1;
         if (distance <= 0 || !inside) return {};
-        return std::pair{area_radiance(lamp, cosine), distance * scale};
+        return std::pair{area_radiance(lamp, tangent_between(direction, z)), distance * scale};
     }
     const float along = dot(to_center, direction);
     const float across = length_squared(to_center - direction * along);

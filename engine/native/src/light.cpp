@@ -12,6 +12,13 @@ constexpr float below_one = 0x1.fffffep-1f;
 
 float area(const WorldTriangle &t) { return length(cross(t.b - t.a, t.c - t.a)) / 2; }
 
+/// Whether one of an instance's materials emits, so that its triangles need be looked at.
+bool emits_anywhere(const Scene &scene, const Instance &instance) {
+    const auto first = scene.slot_materials.begin() + instance.first_slot;
+    const auto count = static_cast<ptrdiff_t>(scene.meshes[instance.mesh].slot_count);
+    return std::any_of(first, first + count, [&](uint32_t material) { return scene.materials[material].emits(); });
+}
+
 /// A point of a triangle, uniform by area.
 Vec3 sample_triangle(const WorldTriangle &t, float u, float v) {
     const float root = std::sqrt(u);
@@ -38,6 +45,7 @@ void Lights::find_emissive_triangles() {
     std::vector<double> cumulative;
     for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
         const Mesh &mesh = scene_.meshes[scene_.instances[i].mesh];
+        if (!emits_anywhere(scene_, scene_.instances[i])) continue;
         for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
             const Material &material = scene_.material(i, t);
             if (!material.emits()) continue;
@@ -52,7 +60,7 @@ void Lights::find_emissive_triangles() {
             triangle_bounds_.add(corners.c);
         }
     }
-    for (size_t e = 0; e < triangles_.size(); ++e) triangles_[e].cumulative = static_cast<float>(cumulative[e] / power);
+    for (size_t e = 0; e < triangles_.size(); ++e) triangles_[e].cumulative = cumulative[e] / power;
     triangle_power_ = static_cast<float>(power);
 }
 
@@ -99,9 +107,9 @@ std::optional<LightSample> Lights::sample(size_t source, Vec3 position, Vec3 sha
     return LightSample{direction, std::numeric_limits<float>::infinity(), world_ * (pi / local.z), 0};
 }
 
-size_t Lights::choose_emitter(float choice) const {
+size_t Lights::choose_emitter(double choice) const {
     const auto found = std::upper_bound(triangles_.begin(), triangles_.end(), choice,
-                                        [](float c, const Emitter &e) { return c < e.cumulative; });
+                                        [](double c, const Emitter &e) { return c < e.cumulative; });
     return std::min(static_cast<size_t>(found - triangles_.begin()), triangles_.size() - 1);
 }
 
@@ -144,7 +152,7 @@ std::optional<PhotonEmission> Lights::emit(Sequence &sequence) const {
     if (chosen == world_source()) {
         photon = emit_from_world(point);
     } else if (chosen == triangles_source()) {
-        photon = emit_from_triangle(std::min(left / power_[chosen], below_one), choice[1], point);
+        photon = emit_from_triangle(choice[2], choice[1], point);
     } else {
         photon = emit_from_lamp(lamps_[chosen], sphere_of(scene_), point);
     }
@@ -158,7 +166,8 @@ PhotonEmission Lights::emit_from_triangle(float choice, float side, const std::a
     const Vec3 face = normalize(cross(corners.b - corners.a, corners.c - corners.a));
     const Vec3 normal = side < 0.5f ? face : -face;
     const Vec3 direction = Frame(normal).to_world(sample_cosine_hemisphere(u[0], u[1]));
-    const Vec3 origin = sample_triangle(corners, u[2], u[3]) + normal * position_error(corners);
+    const Vec3 origin =
+        sample_triangle(corners, u[2], u[3]) + normal * scene_.position_error(emitter.instance, emitter.triangle);
     // Radiance over the density that choosing by power gives: the colour of the whole power.
     const Vec3 emission = scene_.material(emitter.instance, emitter.triangle).emission;
     return {{origin, direction}, emission * (triangle_power_ / average(emission)), {}};
@@ -171,12 +180,13 @@ PhotonEmission Lights::emit_from_world(const std::array<float, 4> &u) const {
     return {ray_across(sphere, direction, u[2], u[3]), flux, {}};
 }
 
-std::optional<std::pair<Vec3, float>> Lights::seen(const Ray &ray) const {
+std::optional<std::pair<Vec3, float>> Lights::seen(const Ray &ray, bool is_open) const {
     std::optional<std::pair<Vec3, float>> nearest;
     for (const Lamp &lamp : lamps_) {
         if (!lamp.visible_to_camera) continue;
         const auto met = intersect_lamp(lamp, ray);
-        const bool within = met && met->second > ray.near && (met->second < ray.far || std::isinf(ray.far));
+        if (!met) continue;
+        const bool within = std::isinf(met->second) ? is_open : met->second > ray.near && met->second < ray.far;
         if (within && (!nearest || met->second < nearest->second)) nearest = met;
     }
     return nearest;

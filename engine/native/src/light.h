@@ -87,12 +87,13 @@ class Lights {
     std::optional<PhotonEmission> emit(Sequence &sequence) const;
 
     /// Radiance of the nearest lamp that the camera sees along a ray, and its distance, if before the ray's end.
-    std::optional<std::pair<Vec3, float>> seen(const Ray &ray) const;
+    /// @param is_open no surface ends the ray: lamps at infinity are seen wherever the ray is clipped
+    std::optional<std::pair<Vec3, float>> seen(const Ray &ray, bool is_open) const;
 
   private:
     struct Emitter {  // an emissive triangle
         uint32_t instance, triangle;
-        float cumulative;  // share of the emitted power up to and with this one
+        double cumulative;  // share of the emitted power up to and with this one
     };
 
     void find_emissive_triangles();
@@ -101,7 +102,7 @@ class Lights {
     float importance(size_t source, Vec3 position) const;
     float total_importance(Vec3 position) const;
     std::optional<LightSample> sample_triangles(Vec3 position, float choice, float u, float v) const;
-    size_t choose_emitter(float choice) const;
+    size_t choose_emitter(double choice) const;
     PhotonEmission emit_from_triangle(float choice, float side, const std::array<float, 4> &u) const;
     PhotonEmission emit_from_world(const std::array<float, 4> &u) const;
 

@@ -14,11 +14,16 @@ struct Material {
     bool emits() const { return max_component(emission) > 0; }
 };
 
-/// Ratio of a direction's cosine to the shading normal and to the geometric one. Photons land and leave by the
-/// geometric cosine; what the eye sees is shaded by the other (Veach 1997, section 5.3). The denominator is held
-/// above 0.1: at grazing photons the ratio has no bound, and one photon would outshine all others.
-constexpr float shading_ratio(float shading_cosine, float geometric_cosine) {
-    return std::max(shading_cosine, 0.0f) / std::max(geometric_cosine, 0.1f);
+/// Largest ratio of the cosines to two normals that a photon may be weighted by.
+constexpr float max_shading_ratio = 8;
+
+/// Ratio of a direction's cosines to two normals. Photons land and leave by the geometric cosine; what the eye sees is
+/// shaded by the other (Veach 1997, section 5.3). The ratio itself is bounded, lest one grazing photon outshine all
+/// others: where the normals nearly agree it stays 1 at any angle.
+constexpr float shading_ratio(float wanted_cosine, float given_cosine) {
+    return std::max(wanted_cosine, 0.0f) < max_shading_ratio * given_cosine
+               ? std::max(wanted_cosine, 0.0f) / given_cosine
+               : (wanted_cosine > 0 ? max_shading_ratio : 0.0f);
 }
 
 }  // namespace photon_maps

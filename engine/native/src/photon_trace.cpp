@@ -97,6 +97,7 @@ TracedPhotons trace_photons(const Scene &scene, const Lights &lights, const Phot
     parallel_for(tracing.threads, chunk_count, cancel, [&](size_t c) {
         const uint64_t begin = c * chunk_size, end = std::min(begin + chunk_size, tracing.count);
         for (uint64_t i = begin; i < end; ++i) {
+            throw_if_cancelled(cancel);
             Sequence sequence(tracing.first + i, tracing.seed);
             const std::optional<PhotonEmission> emission = lights.emit(sequence);
             if (!emission || !(max_component(emission->flux) > 0)) continue;

@@ -11,13 +11,13 @@
 
 namespace photon_maps {
 
-/// Radius of pass `index` after Knaus and Zwicker 2011, equation 21: r^2 shrinks by (i + 2/3) / (i + 1) from the
-/// i-th pass to the next, so that noise and bias both vanish.
+/// Radius of pass `index` (counted from 0) after Knaus and Zwicker 2011, equation 21: r^2 shrinks by (i + 2/3) / (i +
+/// 1) from the i-th pass to the next, so that noise and bias both vanish.
 float shrunk_radius(float first_radius, uint32_t index);
 
 /// Chooses the first radius so that the kernel of a typical pixel holds `photons_in_kernel` photons of one pass: by
 /// the density of pilot photons, which no picture sums - a radius from the photons themselves would brighten it.
-/// @return 0 if no indirect photon falls anywhere
+/// @return above 0 in a scene that has surfaces, even if no pilot photon fell anywhere
 float choose_first_radius(const Scene &scene, const Lights &lights, const Camera &camera, PhotonTracing pass,
                           const std::atomic<bool> *cancel);
 

@@ -25,13 +25,6 @@ rtc::Ray to_embree(const Ray &ray) {
 
 }  // namespace
 
-float position_error(const WorldTriangle &t) {
-    // Three roundings of the point's own and those of an instance's transform, in units of the largest coordinate
-    // (Pharr, Jakob, Humphreys 2023, section 6.8).
-    const float largest = max_component(max(abs(t.a), max(abs(t.b), abs(t.c))));
-    return 8 * std::numeric_limits<float>::epsilon() * largest;
-}
-
 Scene::~Scene() {
     // Embree's scenes go before the arrays they share.
     top_scene_.reset();
@@ -41,8 +34,8 @@ Scene::~Scene() {
 void Scene::freeze() {
     if (frozen_) return;
     count_uses();
-    move_single_uses_to_world();
     find_bounds();
+    move_single_uses_to_world();
     frozen_ = true;
 }
 
@@ -185,7 +178,7 @@ bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {
     const WorldTriangle t = world_triangle(hit.instance, hit.triangle);
     const Vec3 ab = t.b - t.a, ac = t.c - t.a;
     hit.position = t.a + ab * rh.hit.u + ac * rh.hit.v;
-    hit.error = position_error(t);
+    hit.error = position_error(hit.instance, hit.triangle);
 
     // Geometric normal towards the ray; a triangle so thin that it has none takes the ray's own direction.
     const Vec3 n = cross(ab, ac);
@@ -231,6 +224,18 @@ WorldTriangle Scene::world_triangle(uint32_t instance, uint32_t triangle) const 
     const WorldTriangle corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
     if (mesh.use_count == 1) return corners;
     return {i.transform.point(corners.a), i.transform.point(corners.b), i.transform.point(corners.c)};
+}
+
+float Scene::position_error(uint32_t instance, uint32_t triangle) const {
+    const Instance &i = instances[instance];
+    const Mesh &mesh = meshes[i.mesh];
+    const Triangle &t = mesh.triangles[triangle];
+    const Vec3 v = max(abs(mesh.vertices[t[0]]), max(abs(mesh.vertices[t[1]]), abs(mesh.vertices[t[2]])));
+    // Three roundings of the point's own and those of the instance's transform (Pharr, Jakob, Humphreys 2023, section
+    // 6.8): of all the terms, which may cancel to a small coordinate.
+    const Transform &m = i.transform;
+    const Vec3 terms = mesh.use_count == 1 ? v : abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z + abs(m.origin);
+    return 8 * std::numeric_limits<float>::epsilon() * max_component(terms);
 }
 
 size_t Scene::memory_bytes() const {

@@ -25,6 +25,7 @@ struct Mesh {
     std::vector<Triangle> triangles;
     std::vector<uint32_t> slots;       ///< material slot of each triangle; empty: all 0
     std::vector<Vec3> corner_normals;  ///< three a triangle; empty: flat
+    uint32_t slot_count = 0;           ///< one more than the largest slot; 0 without triangles
     uint32_t use_count = 0;            ///< instances that show it
 
     size_t vertex_count() const { return vertices.size() - 1; }
@@ -78,9 +79,6 @@ struct WorldTriangle {
     Vec3 a, b, c;
 };
 
-/// Bound of the rounding error of a point computed on the triangle, in scene units.
-float position_error(const WorldTriangle &triangle);
-
 /// All of the scene's surfaces. Add and set, freeze, build; then ask from any number of threads.
 class Scene {
   public:
@@ -108,6 +106,8 @@ class Scene {
 
     const Material &material(uint32_t instance, uint32_t triangle) const;
     WorldTriangle world_triangle(uint32_t instance, uint32_t triangle) const;
+    /// Bound of the rounding error of a point computed on the triangle, in scene units.
+    float position_error(uint32_t instance, uint32_t triangle) const;
     const Bounds &bounds() const { return bounds_; }
     /// Edges where surfaces stop or fold, in world space.
     std::span<const FeatureEdge> feature_edges() const { return feature_edges_; }

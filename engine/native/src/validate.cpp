@@ -10,7 +10,8 @@ namespace photon_maps {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr float min_radius = 1e-12f;  // its square is still a normal number
+constexpr float min_radius = 1e-12f;    // its square is still a normal number
+constexpr float least_extent = 1e-15f;  // likewise
 
 void require_struct_size(size_t given, size_t expected, const char *name) {
     require(given == expected, std::string(name) + " has struct_size " + std::to_string(given) + ", expected " +
@@ -91,14 +92,16 @@ void validate(const pm_light &light, size_t index) {
     require(light.type <= PM_LIGHT_ELLIPSE, name + ": unknown type " + std::to_string(light.type));
     require_coordinates(light.transform, name + ": transform");
     for (int column = 0; column < 3; ++column)
-        require(column_length(light.transform, column) > 0, name + ": transform has no extent along an axis");
+        require(column_length(light.transform, column) > least_extent,
+                name + ": transform has no extent along an axis");
     validate_radiance(light.power, name + ": power");
     const bool is_area = light.type == PM_LIGHT_RECTANGLE || light.type == PM_LIGHT_ELLIPSE;
     const float max_size = light.type == PM_LIGHT_SUN ? pi : max_coordinate;
     for (const float v : light.size) require_range(v, 0, max_size, name + ": size");
     if (is_area) {
-        require(light.size[0] > 0 && light.size[1] > 0, name + ": an area light needs a size above 0");
-        require_range(light.spread, 1e-4f, pi * 1.00001f, name + ": spread");
+        require(light.size[0] >= least_extent && light.size[1] >= least_extent,
+                name + ": an area light needs a size above 0");
+        require_range(light.spread, 0, pi * 1.00001f, name + ": spread");
     }
     if (light.type == PM_LIGHT_SPOT) {
         require_range(light.spot_angle, 1e-4f, pi * 1.00001f, name + ": spot_angle");
@@ -111,7 +114,8 @@ void validate(const pm_camera &camera) {
     require(camera.type <= PM_CAMERA_ORTHOGRAPHIC, "camera: unknown type " + std::to_string(camera.type));
     require_coordinates(camera.transform, "camera: transform");
     for (int column = 0; column < 3; ++column)
-        require(column_length(camera.transform, column) > 0, "camera: transform has no extent along an axis");
+        require(column_length(camera.transform, column) > least_extent,
+                "camera: transform has no extent along an axis");
     require_coordinates(camera.window, "camera: window");
     require(camera.window[0] < camera.window[1] && camera.window[2] < camera.window[3], "camera: the window is empty");
     const auto [x, y, width, height] = std::to_array(camera.region);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The C interface end to end: a room is rendered and read back, random garbage is refused or rendered, and nothing
-// crashes; under the sanitizers nothing is leaked or read out of bounds either.
+// crashes; under the sanitizers nothing is read out of bounds either.
 #include <algorithm>
 #include <array>
 #include <atomic>
