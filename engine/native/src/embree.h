@@ -42,7 +42,7 @@ static_assert(sizeof(RayHit) == 96);
 enum class GeometryType : int { triangle = 0, instance = 121 };
 enum class BufferType : int { index = 0, vertex = 1 };
 enum class Format : int { uint3 = 0x5003, float3 = 0x9003, float3x4_row_major = 0x9134 };
-enum class SceneFlags : int { none = 0, robust = 4 };
+enum class SceneFlags : int { robust = 4 };
 enum class BuildQuality : int { medium = 1 };
 
 using Device = struct DeviceHandle *;

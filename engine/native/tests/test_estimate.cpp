@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "estimate.h"
+#include "published_kernels.h"
 
 using namespace photon_maps;
 
@@ -16,20 +17,6 @@ constexpr Vec3 up{0, 0, 1};
 Vec3 random_direction(std::mt19937 &random) {
     std::normal_distribution<float> normal;
     return normalize({normal(random), normal(random), normal(random)});
-}
-
-double published_weight(const Kernel &kernel, double t) {
-    switch (kernel.filter) {
-        case PM_FILTER_NONE:
-            return 1;
-        case PM_FILTER_CONE:
-            return 1 - std::sqrt(t) / double{kernel.cone_k};
-        case PM_FILTER_GAUSSIAN:
-            return 0.918 * (1 - (1 - std::exp(-1.953 * t / 2)) / (1 - std::exp(-1.953)));
-        case PM_FILTER_EPANECHNIKOV:
-            return 1 - t;
-    }
-    return -1;
 }
 
 /// Returns whether the segments p-q and a-b cross, in the plane z = 0.
@@ -55,11 +42,11 @@ Estimate brute_force(const std::vector<Photon> &photons, const std::vector<Featu
                    cross_each_other(query.position, photon.position, e.a, e.b);
         };
         if (std::ranges::any_of(edges, hides)) continue;
-        double weight = published_weight(kernel, t);
+        double weight = test::published_weight(kernel, t);
         if (!(query.shading_normal == query.normal)) {
             const Vec3 to_light = -unpack_direction(photon.direction);
-            weight *= double{std::max(dot(query.shading_normal, to_light), 0.0f)} /
-                      double{std::max(dot(query.normal, to_light), 0.1f)};
+            const double shading = std::max(dot(query.shading_normal, to_light), 0.0f);
+            weight *= std::min(shading / std::max(double{dot(query.normal, to_light)}, 1e-6), 8.0);
         }
         ++count;
         for (size_t c = 0; c < 3; ++c) flux[c] += weight * double{photon.flux[static_cast<int>(c)]};

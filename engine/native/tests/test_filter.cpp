@@ -4,25 +4,11 @@
 
 #include "check.h"
 #include "filter.h"
+#include "published_kernels.h"
 
 using namespace photon_maps;
 
 namespace {
-
-/// The kernels as they are published, in double precision; t is (d / r)^2.
-double published_weight(const Kernel &kernel, double t) {
-    switch (kernel.filter) {
-        case PM_FILTER_NONE:
-            return 1;
-        case PM_FILTER_CONE:
-            return 1 - std::sqrt(t) / double{kernel.cone_k};
-        case PM_FILTER_GAUSSIAN:
-            return 0.918 * (1 - (1 - std::exp(-1.953 * t / 2)) / (1 - std::exp(-1.953)));
-        case PM_FILTER_EPANECHNIKOV:
-            return 1 - t;
-    }
-    return -1;
-}
 
 /// The integral of w(rho) rho drho from 0 to s, by the midpoint rule.
 double integral(const Kernel &kernel, double s) {
@@ -31,7 +17,7 @@ double integral(const Kernel &kernel, double s) {
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
         const double rho = (i + 0.5) * width;
-        sum += published_weight(kernel, rho * rho / (r * r)) * rho * width;
+        sum += test::published_weight(kernel, rho * rho / (r * r)) * rho * width;
     }
     return sum;
 }
@@ -48,7 +34,8 @@ int main() {
                 for (float t = 0; t <= 1; t += 0.0625f) {
                     const Float8 weights = kernel.weights(broadcast(t));
                     for (size_t lane = 0; lane < lanes; ++lane) {
-                        checks.near(double{weights[lane]}, published_weight(kernel, double{t}), 3e-7, name + " weight");
+                        checks.near(double{weights[lane]}, test::published_weight(kernel, double{t}), 3e-7,
+                                    name + " weight");
                     }
                     const float s = radius * std::sqrt(t);
                     const double expected = integral(kernel, double{s});
