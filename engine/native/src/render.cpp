@@ -69,7 +69,7 @@ void Render::choose_radius() {
         const std::span<const FeatureEdge> edges = scene_.feature_edges();
         edges_ = EdgeIndex({edges.begin(), edges.end()}, kernel.radius);
         // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
-        constexpr double bearable_crowding = 256;
+        constexpr double bearable_crowding = 1024;
         constexpr int most_halvings = 12;
         const bool is_chosen = !(settings_.kernel.radius > 0);
         for (int halving = 0; is_chosen && edges_.crowding() > bearable_crowding && halving < most_halvings;
