@@ -18,6 +18,9 @@ class Pass(enum.IntEnum):
     EMISSION = 5
     DIRECT = 6
     INDIRECT = 7
+    CAUSTIC = 8
+    BACKGROUND = 9
+    PHOTON_DENSITY = 10
 
 
 @dataclass(frozen=True)
@@ -41,4 +44,7 @@ PASSES = (
     PassInfo(Pass.EMISSION, "Emission", "RGB", "COLOR", "use_pass_emit"),
     PassInfo(Pass.DIRECT, "Direct", "RGB", "COLOR", "photon_maps.use_pass_direct"),
     PassInfo(Pass.INDIRECT, "Indirect", "RGB", "COLOR", "photon_maps.use_pass_indirect"),
+    PassInfo(Pass.CAUSTIC, "Caustic", "RGB", "COLOR", "photon_maps.use_pass_caustic"),
+    PassInfo(Pass.BACKGROUND, "Environment", "RGB", "COLOR", "use_pass_environment"),
+    PassInfo(Pass.PHOTON_DENSITY, "Photon Density", "X", "VALUE", "photon_maps.use_pass_photon_density"),
 )

@@ -132,6 +132,17 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
         soft_max=128,
         max=1024,
     )
+    use_caustics: BoolProperty(
+        name="Caustics",
+        description="Trace photons for light that glass and metal throw onto rough surfaces. Off is faster where "
+        "there are such objects, and leaves that light out",
+        default=_DEFAULTS.use_caustics,
+    )
+    use_indirect: BoolProperty(
+        name="Indirect Light",
+        description="Trace photons for light that rough surfaces send on. Off is faster and leaves that light out",
+        default=_DEFAULTS.use_indirect,
+    )
     seed: IntProperty(
         name="Seed",
         description="Chooses another set of random numbers: other noise, the same speed and accuracy",
@@ -199,7 +210,16 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
     )
     use_pass_indirect: BoolProperty(
         name="Indirect",
-        description="Light that was scattered more than once. Costs memory, hardly any time",
+        description="Light that was scattered more than once, caustics left out. Costs memory, hardly any time",
+    )
+    use_pass_caustic: BoolProperty(
+        name="Caustic",
+        description="Light that glass and metal throw onto rough surfaces. Costs memory, hardly any time",
+    )
+    use_pass_photon_density: BoolProperty(
+        name="Photon Density",
+        description="Photons for each square metre around what a pixel shows: where estimates are good, and where "
+        "they are not. Costs memory, hardly any time",
     )
 
 
@@ -219,6 +239,8 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
     return RenderSettings(
         integrator=Integrator[user.integrator],
         max_bounces=user.max_bounces,
+        use_caustics=user.use_caustics,
+        use_indirect=user.use_indirect,
         seed=user.seed,
         use_progressive=user.use_progressive,
         stop=Stop[user.stop],

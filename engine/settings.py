@@ -51,6 +51,8 @@ class RenderSettings:
     filter: Filter = Filter.EPANECHNIKOV
     cone_k: float = 1.0
     max_bounces: int = 32
+    use_caustics: bool = True
+    use_indirect: bool = True
     seed: int = 0
     use_progressive: bool = True
     stop: Stop = Stop.PASSES

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from photon_maps_native import Color, Light, LightType, Material, Mesh, SceneData
+from photon_maps_native import Color, Light, LightType, Mesh, Ray, SceneData, diffuse
 
 from tests.shapes import camera, quad, scene
 
@@ -41,7 +41,7 @@ class ReferenceScene:
         x /= np.linalg.norm(x)
         matrix = np.column_stack([x, np.cross(z, x), z, self.lamp_center]).astype(np.float32)
         power = np.pi * self.lamp_size[0] * self.lamp_size[1] * np.array(self.lamp_radiance)
-        return Light(LightType.RECTANGLE, matrix, tuple(power.tolist()), self.lamp_size, visible_to_camera=True)
+        return Light(LightType.RECTANGLE, matrix, tuple(power.tolist()), self.lamp_size, visibility=Ray.ALL)
 
     def plate(self) -> Mesh:
         """Return the black plate behind the lamp."""
@@ -51,7 +51,7 @@ class ReferenceScene:
     def data(self) -> SceneData:
         """Return the scene as arrays."""
         meshes = [mesh for mesh, _ in self.surfaces] + [self.plate()]
-        materials = [Material(color) for _, color in self.surfaces] + [Material((0.0, 0.0, 0.0))]
+        materials = [diffuse(color) for _, color in self.surfaces] + [diffuse((0.0, 0.0, 0.0))]
         half_angle = np.radians(self.field_of_view) / 2
         view = camera(self.eye, self.target, (RESOLUTION, RESOLUTION), half_angle)
         return scene(meshes, view, materials, [self.light()])

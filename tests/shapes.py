@@ -19,6 +19,9 @@ from photon_maps_native import (
     NativeRender,
     NativeScene,
     SceneData,
+    World,
+    diffuse,
+    emitter,
 )
 
 from engine.passes import Pass
@@ -82,7 +85,7 @@ def camera(
 def scene(
     meshes: Sequence[Mesh],
     view: Camera,
-    materials: Sequence[Material] = (Material(),),
+    materials: Sequence[Material] = (diffuse(),),
     lights: Sequence[Light] = (),
     world: Color = (0.0, 0.0, 0.0),
     transforms: Sequence[np.ndarray] | None = None,
@@ -93,7 +96,8 @@ def scene(
     placed = np.stack(transforms) if transforms is not None else np.tile(IDENTITY, (count, 1, 1))
     indices = np.arange(count, dtype=np.uint32)
     instances = Instances(indices, placed, first, np.arange(len(materials), dtype=np.uint32))
-    return SceneData(list(meshes), instances, list(materials), list(lights), view, world)
+    surfaces = [*materials, emitter(world)]
+    return SceneData(list(meshes), instances, surfaces, list(lights), view, World(len(materials)))
 
 
 def lamp(kind: LightType, position: Sequence[float], target: Sequence[float], power: float, **fields: object) -> Light:
@@ -118,7 +122,7 @@ class Picture:
 
     def pixels(self, buffer: Pass = Pass.COMBINED) -> np.ndarray:
         """Return a buffer (height, width, channels) in double precision; Combined without its alpha."""
-        channels = {Pass.COMBINED: 4, Pass.DEPTH: 1}.get(buffer, 3)
+        channels = {Pass.COMBINED: 4, Pass.DEPTH: 1, Pass.PHOTON_DENSITY: 1}.get(buffer, 3)
         return self.render.read(buffer, channels)[..., :3].astype(float)
 
     def photon_irradiance(self, kind: int, points: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, Material, Mesh, SceneData
+from photon_maps_native import LightType, Mesh, SceneData, diffuse
 
 from engine.passes import Pass
 from engine.settings import Integrator
@@ -20,7 +20,7 @@ def room_with(mesh: Mesh, center: tuple[float, float, float], half_angle: float)
     place[:, 3] = center
     light = lamp(LightType.RECTANGLE, (0.2, 0.1, 1.99), (0.2, 0.1, 0), 20.0, size=(0.6, 0.6))
     view = camera((0, -0.95, 0.75), center, (32, 32), half_angle)
-    materials = [Material((0.7, 0.7, 0.7)), Material((0.6, 0.7, 0.8))]
+    materials = [diffuse((0.7, 0.7, 0.7)), diffuse((0.6, 0.7, 0.8))]
     return scene([box((-1, -1, 0), (1, 1, 2)), mesh], view, materials, [light], transforms=[IDENTITY, place])
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, Material, SceneData
+from photon_maps_native import LightType, SceneData, diffuse
 
 from engine.passes import Pass
 from engine.session import Session
@@ -22,7 +22,7 @@ def still_life() -> SceneData:
     place = np.eye(3, 4, dtype=np.float32)
     moved = place.copy()
     moved[:, 3] = (0.8, 0.2, 0.5)
-    materials = [Material((0.8, 0.7, 0.6)), Material((0.7, 0.2, 0.2), (0.3, 0.0, 0.0)), Material((0.3, 0.5, 0.9))]
+    materials = [diffuse((0.8, 0.7, 0.6)), diffuse((0.7, 0.2, 0.2), (0.3, 0.0, 0.0)), diffuse((0.3, 0.5, 0.9))]
     lights = [
         lamp(LightType.RECTANGLE, (1, -1, 3), (0, 0, 0), 40.0, size=(1, 0.5)),
         lamp(LightType.SPOT, (-2, -2, 2), (0, 0, 0), 30.0, size=(0.05, 0), spot_angle=0.8, spot_blend=0.2),

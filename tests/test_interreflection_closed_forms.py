@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, Material
+from photon_maps_native import LightType, Ray, diffuse
 
 from engine.passes import Pass
 from engine.settings import Filter, Integrator
 from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 
 INDIRECT_PHOTONS = 1
+PARTS = (Pass.EMISSION, Pass.BACKGROUND, Pass.DIRECT, Pass.INDIRECT, Pass.CAUSTIC)  #: whose sum is the picture
 ROOM = 2.0
 
 
@@ -19,7 +20,7 @@ def room(albedo: float, emission: float, resolution: tuple[int, int] = (64, 64),
     """A closed cube whose walls shine, seen from inside towards a corner; about two thirds of the frame is near it."""
     half = ROOM / 2
     view = camera((-0.6 * half, -0.55 * half, -0.5 * half), (half, half, half), resolution, half_angle=0.75)
-    material = Material((albedo,) * 3, (emission,) * 3)
+    material = diffuse((albedo,) * 3, (emission,) * 3)
     data = scene([box((-half,) * 3, (half,) * 3)], view, [material])
     return Picture(data, box_filtered(**settings))
 
@@ -77,7 +78,7 @@ def test_white_sky_makes_a_white_object_vanish(integrator: Integrator) -> None:
     data = scene(
         [box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)), quad((0, 0, -0.5), (2, 0, 0), (0, 2, 0))],
         camera((2, 2.5, 1.5), (0, 0, -0.2), (48, 48), half_angle=0.4),
-        [Material((1.0, 1.0, 1.0))],
+        [diffuse((1.0, 1.0, 1.0))],
         world=(1.0, 1.0, 1.0),
     )
     settings = box_filtered(integrator=integrator, photon_count=1 << 18, max_bounces=64)
@@ -94,7 +95,7 @@ def test_many_bounces_in_a_sphere_keep_their_energy(is_smooth: bool) -> None:
         mesh.corner_normals = None
     light = lamp(LightType.POINT, (0, 0, 0), (0, 0, -1), power)
     view = camera((0.2, 0.1, 0.3), (1, 0.4, 0.2), (32, 32), half_angle=0.6)
-    picture = Picture(scene([mesh], view, [Material((albedo,) * 3)], [light]), box_filtered(max_bounces=512)).run(16)
+    picture = Picture(scene([mesh], view, [diffuse((albedo,) * 3)], [light]), box_filtered(max_bounces=512)).run(16)
     direct = albedo / np.pi * power / (4 * np.pi * radius**2)
     assert picture.pixels(Pass.INDIRECT).mean() == pytest.approx(direct * albedo / (1 - albedo), rel=0.01)
 
@@ -105,7 +106,7 @@ def test_inside_of_a_sphere_with_a_lamp_at_its_centre(integrator: Integrator) ->
     albedo, power, radius = 0.6, 50.0, 1.5
     view = camera((0.2, 0.1, 0.3), (1, 0.4, 0.2), (32, 32), half_angle=0.6)
     light = lamp(LightType.POINT, (0, 0, 0), (0, 0, -1), power)
-    data = scene([sphere(radius, 64)], view, [Material((albedo,) * 3)], [light])
+    data = scene([sphere(radius, 64)], view, [diffuse((albedo,) * 3)], [light])
     picture = Picture(data, box_filtered(integrator=integrator, max_bounces=256)).run(32)
     direct = albedo / np.pi * power / (4 * np.pi * radius**2)
     assert picture.pixels(Pass.DIRECT).mean() == pytest.approx(direct, rel=0.01)
@@ -124,7 +125,7 @@ def test_emitted_flux_is_absorbed_escapes_or_is_cut(kind: LightType, max_bounces
         quad((-1, 0, 1), (0, -1, 0), (0, 0, 1)),
         quad((0, 1, 1), (1, 0, 0), (0, 0, 1)),
     ]
-    colours = [Material(c) for c in ((0.8, 0.8, 0.8), (0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.5, 0.7, 1.0))]
+    colours = [diffuse(c) for c in ((0.8, 0.8, 0.8), (0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.5, 0.7, 1.0))]
     size = {LightType.SUN: (0.1, 0), LightType.POINT: (0.1, 0), LightType.SPOT: (0.1, 0)}.get(kind, (0.5, 0.3))
     light = lamp(kind, (0.1, -0.2, 1.8), (0, 0.3, 0), 10.0, size=size, spot_angle=1.2, spot_blend=0.3)
     data = scene(walls, camera((0, -4, 1), (0, 0, 1), (8, 8)), colours, [light])
@@ -148,12 +149,12 @@ def test_no_photon_escapes_from_a_closed_room() -> None:
 def test_the_parts_of_a_picture_add_up() -> None:
     view = camera((0, -4, 1), (0, 0, 1), (32, 32))
     meshes = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), box((-0.5, -0.5, 0), (0.5, 0.5, 1))]
-    materials = [Material((0.8, 0.6, 0.4)), Material((0.3, 0.3, 0.9), (0.2, 0.1, 0.0))]
-    light = lamp(LightType.RECTANGLE, (0, 0, 3), (0, 0, 0), 30.0, size=(1, 1), visible_to_camera=True)
+    materials = [diffuse((0.8, 0.6, 0.4)), diffuse((0.3, 0.3, 0.9), (0.2, 0.1, 0.0))]
+    light = lamp(LightType.RECTANGLE, (0, 0, 3), (0, 0, 0), 30.0, size=(1, 1), visibility=Ray.ALL)
     data = scene(meshes, view, materials, [light], world=(0.1, 0.1, 0.2))
     for integrator in Integrator:
         picture = Picture(data, box_filtered(integrator=integrator)).run(3)
-        parts = sum(picture.pixels(p) for p in (Pass.EMISSION, Pass.DIRECT, Pass.INDIRECT))
+        parts = sum(picture.pixels(p) for p in PARTS)
         assert picture.pixels(Pass.DIRECT).max() > 0
         assert picture.pixels(Pass.INDIRECT).max() > 0
         assert parts == pytest.approx(picture.pixels(), rel=1e-5, abs=1e-7)

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, Material
+from photon_maps_native import LightType, Ray, diffuse
 
 from engine.passes import Pass
 from engine.settings import Filter
@@ -147,7 +147,7 @@ def picture_of(case: Case, distance: float, scale: float, **settings: object) ->
     )
     floor = quad((0, 0, 0), (4 * scale, 0, 0), (0, 4 * scale, 0))
     view = camera((0, -3 * scale, 3 * scale), (0, 0, 0), (8, 8), half_angle=0.002)
-    data = scene([floor], view, [Material((ALBEDO,) * 3)], [light])
+    data = scene([floor], view, [diffuse((ALBEDO,) * 3)], [light])
     return Picture(data, box_filtered(**settings))
 
 
@@ -185,7 +185,7 @@ def test_spread_keeps_the_flux(kind: LightType, spread: float) -> None:
 
 
 def test_a_visible_sun_is_seen_beyond_the_clip_end() -> None:
-    light = lamp(LightType.SUN, (0, 0, 1), (0, 0, 0), 3.0, size=(0.2, 0), visible_to_camera=True)
+    light = lamp(LightType.SUN, (0, 0, 1), (0, 0, 0), 3.0, size=(0.2, 0), visibility=Ray.ALL)
     view = replace(camera((0, 0, 0), (0, 0, 1), (8, 8), 0.01), clip_end=10.0)
     pixels = Picture(scene([], view, lights=[light]), box_filtered()).run(1).pixels()
     assert pixels == pytest.approx(np.full((8, 8, 3), 3.0 / (np.pi * np.sin(0.1) ** 2)), rel=1e-4)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, Material, Mesh
+from photon_maps_native import LightType, Mesh, diffuse
 
 from engine.passes import Pass
 from engine.settings import Integrator
@@ -41,7 +41,7 @@ def test_a_small_object_in_a_wide_scene_keeps_its_indirect_light() -> None:
     assert picture.render.statistics().radius_first > 0
 
     # Through a window of a pixel or so the pilot's pixels all miss; the sun's photons hit the plane only at first.
-    far = scene(meshes[1:], camera((0, -400, 1), (0, 0, 0.3), (32, 32), 0.3), [Material((0.8,) * 3)], [light])
+    far = scene(meshes[1:], camera((0, -400, 1), (0, 0, 0.3), (32, 32), 0.3), [diffuse((0.8,) * 3)], [light])
     assert Picture(far, box_filtered()).run(1).render.statistics().radius_first > 0
 
 

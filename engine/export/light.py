@@ -8,7 +8,7 @@ import math
 import bpy
 import numpy as np
 from mathutils import Matrix
-from photon_maps_native.scene_data import MAX_RADIANCE, Light, LightType
+from photon_maps_native.scene_data import MAX_RADIANCE, Light, LightType, Ray
 
 from ..messages import Messages
 from .material import TARGET, checked
@@ -57,7 +57,7 @@ def read_light(lamp: bpy.types.Object, matrix: Matrix, messages: Messages) -> Li
     return Light(
         transform=transform,
         power=tuple(float(channel) for channel in power),
-        visible_to_camera=lamp.visible_camera,
+        visibility=Ray.ALL if lamp.visible_camera else Ray.ALL & ~Ray.CAMERA,
         **shape,
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
-from photon_maps_native.scene_data import MAX_RADIANCE, Color, Material
+from photon_maps_native import MAX_RADIANCE, Color, Material, diffuse
 
 from ..messages import Messages
 from .nodes import ConstantReader, Port, shader_tree, source
@@ -35,7 +35,7 @@ class MaterialTable:
     """The materials of a scene in the order of their first use; number 0 is Blender's default grey."""
 
     def __init__(self, messages: Messages) -> None:
-        self.materials = [Material(albedo=DEFAULT_ALBEDO)]
+        self.materials = [diffuse(DEFAULT_ALBEDO)]
         self._indices: dict[int, int] = {}
         self._messages = messages
 
@@ -54,17 +54,17 @@ def read_material(material: bpy.types.Material, messages: Messages) -> Material:
     """Fold a material; what it cannot hold is named in the messages."""
     tree = shader_tree(material)
     if tree is None:
-        return Material(albedo=checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages))
+        return diffuse(albedo=checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages))
     output = tree.get_output_node(TARGET)
     if output is None:
         messages.add(material.name, "has no Material Output node, so it is black.", "Add a Material Output.")
-        return Material(albedo=(0.0, 0.0, 0.0))
+        return diffuse(albedo=(0.0, 0.0, 0.0))
     reader = ConstantReader(material.name, messages)
     for name in ("Volume", "Displacement"):
         if reader.is_linked(Port(output.inputs[name])):
             messages.add(material.name, f"has a {name.lower()}, which is left out.")
     surface = fold(reader, Port(output.inputs["Surface"]))
-    return Material(
+    return diffuse(
         albedo=checked(surface.diffuse, 1.0, material.name, "diffuse colour", messages),
         emission=checked(surface.emission, MAX_RADIANCE, material.name, "emission", messages),
     )

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 from mathutils import Matrix
-from photon_maps_native.scene_data import MAX_COORDINATE, Instances, Light, Mesh, SceneData
+from photon_maps_native import MAX_COORDINATE, Instances, Light, Mesh, SceneData, World, emitter
+from photon_maps_native.shader import may_emit
 
 from ..messages import Messages
 from .camera import read_camera
@@ -80,13 +81,15 @@ def read_scene(
             _add_object(rows, instance.object, instance.matrix_world)
         if instance.show_particles and not instance.is_instance:
             _name_hair(instance.object, messages)
+    radiance = read_world(layer_world(depsgraph), messages)
+    rows.materials.materials.append(emitter(radiance))
     data = SceneData(
         meshes=rows.meshes,
         instances=_instances(rows),
         materials=rows.materials.materials,
         lights=rows.lights,
         camera=read_camera(camera, depsgraph, messages),
-        world=read_world(layer_world(depsgraph), messages),
+        world=World(len(rows.materials.materials) - 1),
     )
     _name_scene_settings(depsgraph, messages)
     _name_darkness(depsgraph.scene.name, data, messages)
@@ -231,8 +234,9 @@ def _name_scene_settings(depsgraph: bpy.types.Depsgraph, messages: Messages) -> 
 def _name_darkness(name: str, data: SceneData, messages: Messages) -> None:
     """Say why a picture without any light is black."""
     used = {int(material) for material in data.instances.slot_materials}
-    shining = any(any(data.materials[index].emission) for index in used)
-    if not (data.lights or shining or any(data.world)):
+    if data.world is not None:
+        used.add(data.world.material)
+    if not (data.lights or any(may_emit(data.materials[index]) for index in used)):
         messages.add(
             name,
             "has no light: no lamp, no emission and a black world. The picture is black.",

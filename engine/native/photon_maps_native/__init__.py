@@ -1,31 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compiled helper of Photon Maps: a scene as arrays in, radiance out. Knows nothing of Blender."""
 
-from .library import Device, NativeError, NativeRender, NativeScene, Status
+from .errors import NativeError, Status
+from .library import Device, NativeRender, NativeScene
 from .scene_data import (
     MAX_COORDINATE,
     MAX_RADIANCE,
+    Alpha,
+    Attribute,
     Camera,
     CameraType,
     Color,
+    Domain,
+    Extension,
+    Image,
     Instances,
+    Interpolation,
     Light,
     LightType,
     Material,
     Mesh,
     PhotonArrays,
+    Projection,
+    Ray,
     SceneData,
     Statistics,
+    Table,
+    Texture,
+    World,
 )
+from .shader import Shader, diffuse, emitter
 
 __all__ = [
     "MAX_COORDINATE",
     "MAX_RADIANCE",
+    "Alpha",
+    "Attribute",
     "Camera",
     "CameraType",
     "Color",
     "Device",
+    "Domain",
+    "Extension",
+    "Image",
     "Instances",
+    "Interpolation",
     "Light",
     "LightType",
     "Material",
@@ -34,7 +53,15 @@ __all__ = [
     "NativeRender",
     "NativeScene",
     "PhotonArrays",
+    "Projection",
+    "Ray",
     "SceneData",
+    "Shader",
     "Statistics",
     "Status",
+    "Table",
+    "Texture",
+    "World",
+    "diffuse",
+    "emitter",
 ]

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds and loads the compiled helper, checks it, and wraps its calls and errors. With structs.py the only ctypes."""
+"""Finds and loads the compiled helper, checks it, and wraps its calls and errors.
+
+With structs.py and convert.py the only file that knows ctypes.
+"""
 
 from __future__ import annotations
 
 import ctypes
-import enum
 import importlib.util
 import sys
-from ctypes import POINTER, byref, c_char_p, c_float, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, byref, c_char_p, c_uint32, c_uint64, c_void_p
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -15,29 +17,22 @@ from typing import Any
 import numpy as np
 
 from . import structs
-from .scene_data import Camera, Light, Material, Mesh, PhotonArrays, SceneData, Statistics
+from .convert import (
+    floats,
+    shaped,
+    to_camera,
+    to_image,
+    to_instances,
+    to_light,
+    to_material,
+    to_mesh,
+    to_table,
+    to_texture,
+)
+from .errors import NativeError, Status
+from .scene_data import Camera, PhotonArrays, SceneData, Statistics
 
-ABI_VERSION = 1
-
-
-class Status(enum.IntEnum):
-    """Codes that the helper returns, numbered as in photon_maps.h."""
-
-    OK = 0
-    INVALID_ARGUMENT = 1
-    INVALID_OPERATION = 2
-    OUT_OF_MEMORY = 3
-    CANCELLED = 4
-    EMBREE_ERROR = 5
-    INTERNAL_ERROR = 6
-
-
-class NativeError(RuntimeError):
-    """The helper refused or failed; the message says why."""
-
-    def __init__(self, status: Status, message: str) -> None:
-        super().__init__(message)
-        self.status = status
+ABI_VERSION = 2
 
 
 def embree_path() -> Path:
@@ -96,7 +91,10 @@ def declare(library: ctypes.CDLL) -> None:
         "pm_scene_set_instances": [handle, POINTER(structs.PmInstances)],
         "pm_scene_set_materials": [handle, POINTER(structs.PmMaterial), uint64],
         "pm_scene_set_lights": [handle, POINTER(structs.PmLight), uint64],
-        "pm_scene_set_world": [handle, c_float * 3],
+        "pm_scene_add_image": [handle, POINTER(structs.PmImage), POINTER(c_uint32)],
+        "pm_scene_add_texture": [handle, POINTER(structs.PmTexture), POINTER(c_uint32)],
+        "pm_scene_add_table": [handle, POINTER(structs.PmTable), POINTER(c_uint32)],
+        "pm_scene_set_world": [handle, c_uint32, c_uint32],
         "pm_render_create": [
             handle,
             POINTER(structs.PmCamera),
@@ -132,30 +130,6 @@ def call(name: str, *arguments: Any) -> None:
     status = Status(getattr(library, name)(*arguments))
     if status != Status.OK:
         raise NativeError(status, library.pm_last_error().decode("utf-8", "replace"))
-
-
-def floats(array: np.ndarray) -> Any:
-    """Return a pointer to a contiguous float32 array, which must outlive the call."""
-    return array.ctypes.data_as(structs.FloatPointer)
-
-
-def uints(array: np.ndarray) -> Any:
-    """Return a pointer to a contiguous uint32 array, which must outlive the call."""
-    return array.ctypes.data_as(structs.UintPointer)
-
-
-def shaped(array: np.ndarray, dtype: type, shape: tuple[int | None, ...], name: str) -> np.ndarray:
-    """Return the array contiguous and of a dtype, after a check of its shape (None: any length).
-
-    :raises NativeError: if the shape differs.
-    """
-    result = np.ascontiguousarray(array, dtype)
-    fits = result.ndim == len(shape) and all(
-        want in (None, have) for want, have in zip(shape, result.shape, strict=True)
-    )
-    if not fits:
-        raise NativeError(Status.INVALID_ARGUMENT, f"{name} has shape {result.shape}, expected {shape}")
-    return result
 
 
 class Handle:
@@ -220,47 +194,24 @@ class NativeScene(Handle):
         super().__init__()
         call("pm_scene_create", device.handle, byref(self._handle))
         for mesh in scene.meshes:
-            self._add_mesh(mesh)
-        materials = (structs.PmMaterial * len(scene.materials))(*map(to_material, scene.materials))
-        call("pm_scene_set_materials", self.handle, materials, len(materials))
-        self._set_instances(scene)
+            self._add("pm_scene_add_mesh", to_mesh(mesh))
+        for image in scene.images:
+            self._add("pm_scene_add_image", to_image(image))
+        for texture in scene.textures:
+            self._add("pm_scene_add_texture", to_texture(texture))
+        for table in scene.tables:
+            self._add("pm_scene_add_table", to_table(table))
+        materials = [to_material(material) for material in scene.materials]  # holds the arrays until they are copied
+        rows = (structs.PmMaterial * len(materials))(*materials)
+        call("pm_scene_set_materials", self.handle, rows, len(rows))
+        call("pm_scene_set_instances", self.handle, byref(to_instances(scene.instances)))
         lights = (structs.PmLight * len(scene.lights))(*map(to_light, scene.lights))
         call("pm_scene_set_lights", self.handle, lights, len(lights))
-        call("pm_scene_set_world", self.handle, (c_float * 3)(*scene.world))
+        if scene.world is not None:
+            call("pm_scene_set_world", self.handle, scene.world.material, scene.world.visibility)
 
-    def _add_mesh(self, mesh: Mesh) -> None:
-        vertices = shaped(mesh.vertices, np.float32, (None, 3), "vertices")
-        triangles = shaped(mesh.triangles, np.uint32, (None, 3), "triangles")
-        count = len(triangles)
-        slots = None if mesh.slots is None else shaped(mesh.slots, np.uint32, (count,), "slots")
-        normals = mesh.corner_normals
-        normals = None if normals is None else shaped(normals, np.float32, (count, 3, 3), "corner_normals")
-        native = structs.PmMesh(
-            vertex_count=len(vertices),
-            triangle_count=count,
-            vertices=floats(vertices),
-            triangles=uints(triangles),
-            slots=None if slots is None else uints(slots),
-            corner_normals=None if normals is None else floats(normals),
-        )
-        call("pm_scene_add_mesh", self.handle, byref(native), byref(c_uint32()))
-
-    def _set_instances(self, scene: SceneData) -> None:
-        instances = scene.instances
-        meshes = shaped(instances.meshes, np.uint32, (None,), "meshes of the instances")
-        count = len(meshes)
-        transforms = shaped(instances.transforms, np.float32, (count, 3, 4), "transforms of the instances")
-        first_slots = shaped(instances.first_slots, np.uint32, (count,), "first_slots")
-        slot_materials = shaped(instances.slot_materials, np.uint32, (None,), "slot_materials")
-        native = structs.PmInstances(
-            count=count,
-            slot_material_count=len(slot_materials),
-            meshes=uints(meshes),
-            transforms=floats(transforms),
-            first_slots=uints(first_slots),
-            slot_materials=uints(slot_materials),
-        )
-        call("pm_scene_set_instances", self.handle, byref(native))
+    def _add(self, function: str, native: ctypes.Structure) -> None:
+        call(function, self.handle, byref(native), byref(c_uint32()))
 
 
 class NativeRender(Handle):
@@ -310,7 +261,7 @@ class NativeRender(Handle):
         """Return what has been done so far."""
         native = structs.PmStatistics()
         call("pm_render_statistics", self.handle, byref(native))
-        values = {name: getattr(native, name) for name, _ in native._fields_ if name != "struct_size"}
+        values = {name: getattr(native, name) for name, _ in native._fields_ if name not in ("struct_size", "reserved")}
         return Statistics(**{name: tuple(v) if isinstance(v, ctypes.Array) else v for name, v in values.items()})
 
     def photons(self, kind: int) -> PhotonArrays:
@@ -330,41 +281,3 @@ class NativeRender(Handle):
         arguments = (floats(points), floats(normals), floats(result))
         call("pm_render_irradiance", self.handle, kind, len(points), *arguments)
         return result
-
-
-def to_material(material: Material) -> structs.PmMaterial:
-    """Return a material as the helper's structure."""
-    return structs.PmMaterial(albedo=tuple(material.albedo), emission=tuple(material.emission))
-
-
-def to_light(light: Light) -> structs.PmLight:
-    """Return a lamp as the helper's structure."""
-    return structs.PmLight(
-        type=light.type,
-        visible_to_camera=light.visible_to_camera,
-        soft_falloff=light.soft_falloff,
-        transform=transform_rows(light.transform),
-        power=tuple(light.power),
-        size=tuple(light.size),
-        spot_angle=light.spot_angle,
-        spot_blend=light.spot_blend,
-        spread=light.spread,
-    )
-
-
-def to_camera(camera: Camera) -> structs.PmCamera:
-    """Return a camera as the helper's structure."""
-    return structs.PmCamera(
-        type=camera.type,
-        transform=transform_rows(camera.transform),
-        window=tuple(camera.window),
-        resolution=tuple(camera.resolution),
-        region=tuple(camera.region),
-        clip_start=camera.clip_start,
-        clip_end=camera.clip_end,
-    )
-
-
-def transform_rows(transform: np.ndarray) -> tuple[float, ...]:
-    """Return a 3x4 matrix as twelve numbers, row by row."""
-    return tuple(shaped(transform, np.float32, (3, 4), "transform").ravel().tolist())

@@ -35,6 +35,71 @@ class CameraType(enum.IntEnum):
 
     PERSPECTIVE = 0
     ORTHOGRAPHIC = 1
+    EQUIRECTANGULAR = 2
+
+
+class Ray(enum.IntFlag):
+    """How a ray came about: what objects and lights are visible to; the bits 1 << pm_ray of photon_maps.h."""
+
+    CAMERA = 1
+    DIFFUSE = 2
+    GLOSSY = 4
+    TRANSMISSION = 8
+    SHADOW = 16
+    ALL = 31
+
+
+class Domain(enum.IntEnum):
+    """What an attribute has values for, numbered as in photon_maps.h."""
+
+    CORNER = 0
+    VERTEX = 1
+    FACE = 2
+
+
+class Interpolation(enum.IntEnum):
+    """How an image is looked up between pixels, numbered as in photon_maps.h."""
+
+    LINEAR = 0
+    CLOSEST = 1
+    CUBIC = 2
+
+
+class Extension(enum.IntEnum):
+    """What is beyond an image's border, numbered as in photon_maps.h."""
+
+    REPEAT = 0
+    EXTEND = 1
+    CLIP = 2
+    MIRROR = 3
+
+
+class Projection(enum.IntEnum):
+    """How a vector finds its place in an image, numbered as in photon_maps.h."""
+
+    FLAT = 0
+    BOX = 1
+    SPHERE = 2
+    TUBE = 3
+    EQUIRECTANGULAR = 4
+    MIRROR_BALL = 5
+
+
+class Alpha(enum.IntEnum):
+    """What an image's alpha means, numbered as in photon_maps.h."""
+
+    STRAIGHT = 0
+    PREMULTIPLIED = 1
+    IGNORED = 2
+
+
+@dataclass
+class Attribute:
+    """Values that vary over a mesh: UV maps, colours, and so on."""
+
+    id: int  #: what shaders ask for; no mesh has two of one id
+    domain: Domain
+    values: np.ndarray  #: float32 (T, 3, C), (V, C) or (T, C) by the domain; C is 1 to 4, the fourth is alpha
 
 
 @dataclass
@@ -45,6 +110,7 @@ class Mesh:
     triangles: np.ndarray  #: (T, 3) uint32, vertex indices
     slots: np.ndarray | None = None  #: (T,) uint32, material slot of each triangle; None: all 0
     corner_normals: np.ndarray | None = None  #: (T, 3, 3) float32, shading normals; None: flat
+    attributes: list[Attribute] = field(default_factory=list)
 
 
 @dataclass
@@ -58,14 +124,47 @@ class Instances:
     transforms: np.ndarray  #: (I, 3, 4) float32, object to world
     first_slots: np.ndarray  #: (I,) uint32, index into slot_materials
     slot_materials: np.ndarray  #: (S,) uint32, index into SceneData.materials
+    visibility: np.ndarray | None = None  #: (I,) uint32 of Ray; None: visible to all
+    properties: np.ndarray | None = None  #: (I, 6) float32: the object's RGBA colour, index, random number; None: 0
 
 
 @dataclass(frozen=True)
 class Material:
-    """A two-sided diffuse surface that may shine."""
+    """A shader: a flat program over registers of three floats that ends in closures; made by shader.Shader."""
 
-    albedo: Color = (0.8, 0.8, 0.8)  #: 0 to 1
-    emission: Color = (0.0, 0.0, 0.0)  #: radiance
+    constants: np.ndarray  #: (C, 3) float32, registers 0 to C - 1
+    instructions: np.ndarray  #: (N, 6) uint32: op, option, shift, output, first argument, argument count
+    arguments: np.ndarray  #: (A,) uint32 registers
+    index: int = 0  #: Blender's pass index
+
+
+@dataclass(frozen=True)
+class Image:
+    """A raster image, rows from the bottom."""
+
+    pixels: np.ndarray  #: (height, width, channels) uint8, float16 or float32; 1, 3 or 4 channels
+    decode: np.ndarray | None = None  #: uint8: (256, 3) float32, linear values of R, G, B
+
+
+@dataclass(frozen=True)
+class Texture:
+    """How images are looked up."""
+
+    images: tuple[int, ...]  #: indices into SceneData.images; one, or one for each tile
+    tiles: tuple[int, ...] | None = None  #: UDIM numbers from 1001 on
+    interpolation: Interpolation = Interpolation.LINEAR
+    extension: Extension = Extension.REPEAT
+    projection: Projection = Projection.FLAT
+    alpha: Alpha = Alpha.STRAIGHT
+    blend: float = 0.0  #: BOX: 0 to 1
+
+
+@dataclass(frozen=True)
+class Table:
+    """A function of a number from 0 to 1: a colour ramp or a curve."""
+
+    entries: np.ndarray  #: (N, 4) float32, RGB and alpha, at equal steps
+    is_stepped: bool = False  #: no interpolation between entries
 
 
 @dataclass(frozen=True)
@@ -80,7 +179,7 @@ class Light:
     spot_blend: float = 0.0  #: 0 to 1
     spread: float = float(np.pi)  #: area lights: full angle in radians
     soft_falloff: bool = False  #: POINT, SPOT: Blender's Soft Falloff
-    visible_to_camera: bool = False
+    visibility: Ray = Ray.ALL & ~Ray.CAMERA
 
 
 @dataclass(frozen=True)
@@ -94,6 +193,19 @@ class Camera:
     region: tuple[int, int, int, int]  #: x, y, width, height of what is rendered
     clip_start: float = 0.0
     clip_end: float = float("inf")
+    aperture_radius: float = 0.0  #: of the lens; 0: all is in focus
+    focus_distance: float = 1.0
+    aperture_rotation: float = 0.0  #: radians
+    aperture_ratio: float = 1.0
+    aperture_blades: int = 0  #: fewer than 3: round
+
+
+@dataclass(frozen=True)
+class World:
+    """What surrounds the scene: the emission of a material, by direction."""
+
+    material: int  #: index into SceneData.materials
+    visibility: Ray = Ray.ALL
 
 
 @dataclass
@@ -105,7 +217,10 @@ class SceneData:
     materials: list[Material]
     lights: list[Light]
     camera: Camera
-    world: Color = (0.0, 0.0, 0.0)  #: radiance from everywhere outside
+    world: World | None = None  #: None: black
+    images: list[Image] = field(default_factory=list)
+    textures: list[Texture] = field(default_factory=list)
+    tables: list[Table] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -120,6 +235,10 @@ class Statistics:
     memory_bytes: int
     radius_first: float
     radius_last: float
+    caustic_photons: int
+    caustic_radius_first: float
+    caustic_radius_last: float
+    caster_count: int
     emitted: Color
     absorbed: Color
     escaped: Color
@@ -137,4 +256,4 @@ class PhotonArrays:
     directions: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: of travel
     normals: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: on the side that was hit
     flux: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: W
-    bounces: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))  #: diffuse bounces before this hit
+    bounces: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))  #: before this hit, 255 at most

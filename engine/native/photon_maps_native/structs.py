@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_double, c_float, c_uint32, c_uint64
+from ctypes import POINTER, c_double, c_float, c_uint32, c_uint64, c_void_p
 
 FloatPointer = POINTER(c_float)
 UintPointer = POINTER(c_uint32)
@@ -17,18 +17,31 @@ class SizedStructure(ctypes.Structure):
         super().__init__(struct_size=ctypes.sizeof(type(self)), **fields)
 
 
+class PmAttribute(SizedStructure):
+    """pm_attribute"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("id", c_uint32),
+        ("domain", c_uint32),
+        ("channels", c_uint32),
+        ("values", FloatPointer),
+    ]
+
+
 class PmMesh(SizedStructure):
     """pm_mesh"""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("attribute_count", c_uint32),
         ("vertex_count", c_uint64),
         ("triangle_count", c_uint64),
         ("vertices", FloatPointer),
         ("triangles", UintPointer),
         ("slots", UintPointer),
         ("corner_normals", FloatPointer),
+        ("attributes", POINTER(PmAttribute)),
     ]
 
 
@@ -44,13 +57,66 @@ class PmInstances(SizedStructure):
         ("transforms", FloatPointer),
         ("first_slots", UintPointer),
         ("slot_materials", UintPointer),
+        ("visibility", UintPointer),
+        ("properties", FloatPointer),
     ]
 
 
 class PmMaterial(SizedStructure):
-    """pm_material"""
+    """pm_material; its instructions are rows of six uint32"""
 
-    _fields_ = [("struct_size", c_uint32), ("albedo", c_float * 3), ("emission", c_float * 3)]
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("index", c_uint32),
+        ("constant_count", c_uint64),
+        ("instruction_count", c_uint64),
+        ("argument_count", c_uint64),
+        ("constants", FloatPointer),
+        ("instructions", UintPointer),
+        ("arguments", UintPointer),
+    ]
+
+
+class PmImage(SizedStructure):
+    """pm_image"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("type", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("channels", c_uint32),
+        ("reserved", c_uint32),
+        ("pixels", c_void_p),
+        ("decode", FloatPointer),
+    ]
+
+
+class PmTexture(SizedStructure):
+    """pm_texture"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("interpolation", c_uint32),
+        ("extension", c_uint32),
+        ("projection", c_uint32),
+        ("alpha", c_uint32),
+        ("blend", c_float),
+        ("tile_count", c_uint64),
+        ("images", UintPointer),
+        ("tiles", UintPointer),
+    ]
+
+
+class PmTable(SizedStructure):
+    """pm_table"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("is_stepped", c_uint32),
+        ("entry_count", c_uint64),
+        ("entries", FloatPointer),
+    ]
 
 
 class PmLight(SizedStructure):
@@ -59,7 +125,7 @@ class PmLight(SizedStructure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("type", c_uint32),
-        ("visible_to_camera", c_uint32),
+        ("visibility", c_uint32),
         ("soft_falloff", c_uint32),
         ("transform", c_float * 12),
         ("power", c_float * 3),
@@ -82,6 +148,12 @@ class PmCamera(SizedStructure):
         ("region", c_uint32 * 4),
         ("clip_start", c_float),
         ("clip_end", c_float),
+        ("aperture_radius", c_float),
+        ("focus_distance", c_float),
+        ("aperture_rotation", c_float),
+        ("aperture_ratio", c_float),
+        ("aperture_blades", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -96,6 +168,8 @@ class PmSettings(SizedStructure):
         ("filter", c_uint32),
         ("cone_k", c_float),
         ("max_bounces", c_uint32),
+        ("use_caustics", c_uint32),
+        ("use_indirect", c_uint32),
         ("seed", c_uint32),
         ("use_progressive", c_uint32),
         ("pixel_filter", c_uint32),
@@ -119,6 +193,11 @@ class PmStatistics(SizedStructure):
         ("memory_bytes", c_uint64),
         ("radius_first", c_float),
         ("radius_last", c_float),
+        ("caustic_photons", c_uint64),
+        ("caustic_radius_first", c_float),
+        ("caustic_radius_last", c_float),
+        ("caster_count", c_uint32),
+        ("reserved", c_uint32),
         ("emitted", c_double * 3),
         ("absorbed", c_double * 3),
         ("escaped", c_double * 3),

@@ -4,6 +4,7 @@
 #include <memory>
 #include <new>
 
+#include "convert.h"
 #include "parallel.h"
 #include "photon_maps.h"
 #include "render.h"
@@ -19,7 +20,7 @@ struct SceneState {
 
     pm::Scene scene;
     std::vector<pm::Lamp> lamps;
-    pm::Vec3 world;
+    pm::World world;
     std::unique_ptr<pm::Lights> lights;  // once frozen
 
     void freeze() {
@@ -77,86 +78,6 @@ void require_handle(const Pointer *handle, const char *name) {
     pm::require(handle != nullptr, std::string(name) + " is null");
 }
 
-pm::Vec3 vec3(const float *v) { return {v[0], v[1], v[2]}; }
-
-std::vector<pm::Vec3> points(const float *values, size_t count) {
-    std::vector<pm::Vec3> result(count);
-    for (size_t i = 0; i < count; ++i) result[i] = vec3(values + 3 * i);
-    return result;
-}
-
-/// Turns a transform's columns into unit vectors.
-pm::Transform rigid(const pm::Transform &t) {
-    return {pm::normalize(t.x), pm::normalize(t.y), pm::normalize(t.z), t.origin};
-}
-
-pm::Mesh to_mesh(const pm_mesh &source) {
-    pm::Mesh mesh;
-    mesh.vertices = points(source.vertices, source.vertex_count);
-    mesh.vertices.emplace_back();  // for Embree's reads past the last one
-    const size_t count = source.triangle_count;
-    mesh.triangles.resize(count);
-    for (size_t t = 0; t < count; ++t)
-        for (size_t corner = 0; corner < 3; ++corner) mesh.triangles[t][corner] = source.triangles[3 * t + corner];
-    if (source.slots) mesh.slots.assign(source.slots, source.slots + count);
-    if (source.corner_normals) mesh.corner_normals = points(source.corner_normals, 3 * count);
-    return mesh;
-}
-
-pm::Lamp to_lamp(const pm_light &source) {
-    pm::Lamp lamp;
-    lamp.type = static_cast<pm::LightType>(source.type);
-    lamp.transform = pm::Transform::from_rows(source.transform);
-    lamp.power = vec3(source.power);
-    // A size whose square drowns is none.
-    constexpr float least_size = 1e-12f;
-    const bool is_area = source.type == PM_LIGHT_RECTANGLE || source.type == PM_LIGHT_ELLIPSE;
-    lamp.width = is_area || source.size[0] >= least_size ? source.size[0] : 0;
-    lamp.height = source.size[1];
-    lamp.spot_angle = source.spot_angle;
-    lamp.spot_blend = source.spot_blend;
-    // Less than a degree is noise without end; Cycles stops there, too.
-    lamp.spread = std::max(source.spread, pm::pi / 180);
-    lamp.soft_falloff = source.soft_falloff != 0;
-    lamp.visible_to_camera = source.visible_to_camera != 0;
-    return lamp;
-}
-
-pm::Camera to_camera(const pm_camera &source) {
-    pm::Camera camera;
-    camera.orthographic = source.type == PM_CAMERA_ORTHOGRAPHIC;
-    camera.transform = rigid(pm::Transform::from_rows(source.transform));
-    camera.left = source.window[0];
-    camera.right = source.window[1];
-    camera.bottom = source.window[2];
-    camera.top = source.window[3];
-    camera.frame_width = source.resolution[0];
-    camera.frame_height = source.resolution[1];
-    camera.x = source.region[0];
-    camera.y = source.region[1];
-    camera.width = source.region[2];
-    camera.height = source.region[3];
-    camera.clip_start = source.clip_start;
-    camera.clip_end = source.clip_end;
-    return camera;
-}
-
-pm::RenderSettings to_settings(const pm_settings &source) {
-    pm::RenderSettings settings;
-    settings.integrator = static_cast<pm::Integrator>(source.integrator);
-    settings.photon_count = source.photon_count;
-    settings.kernel = {static_cast<pm_filter>(source.filter), source.radius, source.cone_k};
-    settings.max_bounces = source.max_bounces;
-    settings.seed = source.seed;
-    settings.use_progressive = source.use_progressive != 0;
-    settings.pixel_filter = static_cast<pm::PixelFilter>(source.pixel_filter);
-    settings.pixel_filter_width = source.pixel_filter_width;
-    settings.film_transparent = source.film_transparent != 0;
-    settings.threads = pm::thread_count(source.threads);
-    settings.buffers = source.passes;
-    return settings;
-}
-
 }  // namespace
 
 struct pm_device {
@@ -180,8 +101,8 @@ struct pm_render {
     pm::Render render;
 
     const std::vector<pm::Photon> &photons(uint32_t kind) const {
-        pm::require(kind <= PM_PHOTONS_INDIRECT, "unknown kind of photons " + std::to_string(kind));
-        return kind == PM_PHOTONS_DIRECT ? render.direct_photons() : render.indirect_photons();
+        pm::require(kind <= PM_PHOTONS_CAUSTIC, "unknown kind of photons " + std::to_string(kind));
+        return render.photons(static_cast<pm_photon_kind>(kind));
     }
 };
 
@@ -230,7 +151,7 @@ pm_status pm_scene_add_mesh(pm_scene *scene, const pm_mesh *mesh, uint32_t *inde
             pm::require(largest < 0xffffffffu, "slots: 2^32 - 1 is no material slot");
             slots = largest + 1;
         }
-        pm::Mesh copy = to_mesh(*mesh);
+        pm::Mesh copy = pm::to_mesh(*mesh);
         copy.slot_count = slots;
         state.scene.meshes.push_back(std::move(copy));
         *index = static_cast<uint32_t>(state.scene.meshes.size() - 1);
@@ -245,14 +166,45 @@ pm_status pm_scene_set_instances(pm_scene *scene, const pm_instances *instances)
         std::vector<uint32_t> mesh_slots;
         for (const pm::Mesh &mesh : state.scene.meshes) mesh_slots.push_back(mesh.slot_count);
         pm::validate(*instances, mesh_slots, state.scene.materials.size());
-        std::vector<pm::Instance> placed;
-        placed.reserve(instances->count);
-        for (size_t i = 0; i < instances->count; ++i)
-            placed.push_back({instances->meshes[i], instances->first_slots[i],
-                              pm::Transform::from_rows(instances->transforms + 12 * i)});
-        state.scene.instances = std::move(placed);
+        state.scene.instances = pm::to_instances(*instances);
         state.scene.slot_materials.assign(instances->slot_materials,
                                           instances->slot_materials + instances->slot_material_count);
+    });
+}
+
+pm_status pm_scene_add_image(pm_scene *scene, const pm_image *image, uint32_t *index) {
+    return guarded([&] {
+        require_handle(scene, "scene");
+        require_handle(image, "image");
+        require_handle(index, "index");
+        SceneState &state = scene->open();
+        pm::validate(*image);
+        state.scene.images.push_back(pm::to_image(*image));
+        *index = static_cast<uint32_t>(state.scene.images.size() - 1);
+    });
+}
+
+pm_status pm_scene_add_texture(pm_scene *scene, const pm_texture *texture, uint32_t *index) {
+    return guarded([&] {
+        require_handle(scene, "scene");
+        require_handle(texture, "texture");
+        require_handle(index, "index");
+        SceneState &state = scene->open();
+        pm::validate(*texture, state.scene.images.size());
+        state.scene.textures.push_back(pm::to_texture(*texture));
+        *index = static_cast<uint32_t>(state.scene.textures.size() - 1);
+    });
+}
+
+pm_status pm_scene_add_table(pm_scene *scene, const pm_table *table, uint32_t *index) {
+    return guarded([&] {
+        require_handle(scene, "scene");
+        require_handle(table, "table");
+        require_handle(index, "index");
+        SceneState &state = scene->open();
+        pm::validate(*table);
+        state.scene.tables.push_back(pm::to_table(*table));
+        *index = static_cast<uint32_t>(state.scene.tables.size() - 1);
     });
 }
 
@@ -265,8 +217,9 @@ pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *materials, 
         if (!state.scene.instances.empty()) throw InvalidOperation("materials are set before the instances");
         std::vector<pm::Material> converted;
         for (size_t i = 0; i < count; ++i) {
-            pm::validate(materials[i], i);
-            converted.push_back({vec3(materials[i].albedo), vec3(materials[i].emission)});
+            pm::validate(materials[i], i, state.scene.textures.size(), state.scene.tables.size());
+            converted.push_back(pm::to_material(materials[i]));
+            pm::prepare(converted.back(), state.scene);
         }
         state.scene.materials = std::move(converted);
     });
@@ -281,19 +234,19 @@ pm_status pm_scene_set_lights(pm_scene *scene, const pm_light *lights, uint64_t 
         std::vector<pm::Lamp> converted;
         for (size_t i = 0; i < count; ++i) {
             pm::validate(lights[i], i);
-            converted.push_back(to_lamp(lights[i]));
+            converted.push_back(pm::to_lamp(lights[i]));
         }
         state.lamps = std::move(converted);
     });
 }
 
-pm_status pm_scene_set_world(pm_scene *scene, const float radiance[3]) {
+pm_status pm_scene_set_world(pm_scene *scene, uint32_t material, uint32_t visibility) {
     return guarded([&] {
         require_handle(scene, "scene");
-        require_handle(radiance, "radiance");
         SceneState &state = scene->open();
-        pm::validate_radiance({radiance, 3}, "world");
-        state.world = vec3(radiance);
+        pm::require(material < state.scene.materials.size(),
+                    "the world's material " + std::to_string(material) + " does not exist");
+        state.world = {material, visibility};
     });
 }
 
@@ -308,7 +261,8 @@ pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_se
         pm::validate(*camera);
         pm::validate(*settings);
         scene->state->freeze();
-        *render = std::make_unique<pm_render>(scene->state, to_camera(*camera), to_settings(*settings)).release();
+        *render =
+            std::make_unique<pm_render>(scene->state, pm::to_camera(*camera), pm::to_settings(*settings)).release();
     });
 }
 
@@ -362,6 +316,11 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
             statistics->escaped[c] = s.balance.escaped[c] * scale;
             statistics->cut[c] = s.balance.cut[c] * scale;
         }
+        statistics->caustic_photons = s.caustic_photons;
+        statistics->caustic_radius_first = s.caustic_radius_first;
+        statistics->caustic_radius_last = s.caustic_radius_last;
+        statistics->caster_count = s.caster_count;
+        statistics->reserved = 0;
         statistics->seconds_trace = s.seconds_trace;
         statistics->seconds_build = s.seconds_build;
         statistics->seconds_gather = s.seconds_gather;
@@ -401,7 +360,7 @@ pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t 
         pm::validate_count(count, "points");
         const pm::PhotonMap map = render->render.map_of(render->photons(kind));
         for (uint64_t i = 0; i < count; ++i) {
-            const pm::Vec3 point = vec3(points + 3 * i), normal = vec3(normals + 3 * i);
+            const pm::Vec3 point = pm::vec3(points + 3 * i), normal = pm::vec3(normals + 3 * i);
             pm::require(pm::is_finite(point) && pm::max_component(pm::abs(point)) <= pm::max_coordinate,
                         "point " + std::to_string(i) + " is not finite or beyond 1e9");
             pm::require(std::abs(pm::length(normal) - 1) < 1e-3f, "normal " + std::to_string(i) + " is no unit vector");

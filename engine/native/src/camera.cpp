@@ -55,7 +55,7 @@ float PixelSampler::offset(float u) const {
 Ray Camera::ray(Vec2 pixel) const {
     const float x_plane = left + (right - left) * pixel.x / static_cast<float>(frame_width);
     const float y_plane = bottom + (top - bottom) * pixel.y / static_cast<float>(frame_height);
-    if (orthographic)
+    if (type == PM_CAMERA_ORTHOGRAPHIC)
         return {transform.point({x_plane, y_plane, 0}), transform.vector({0, 0, -1}), clip_start, clip_end};
     return {transform.origin, transform.vector({x_plane, y_plane, -1}), clip_start, clip_end};
 }

@@ -32,12 +32,14 @@ class PixelSampler {
 
 /// The camera, the frame it fills and the region of it that is rendered.
 struct Camera {
-    bool orthographic = false;
+    pm_camera_type type = PM_CAMERA_PERSPECTIVE;
     Transform transform;             ///< camera to world, rigid; looks along -z
-    float left, right, bottom, top;  ///< window of the whole frame at z = -1, or in scene units
+    float left, right, bottom, top;  ///< window of the whole frame at z = -1, in scene units, or in radians
     uint32_t frame_width, frame_height;
     uint32_t x, y, width, height;  ///< region; y counts from the bottom
     float clip_start, clip_end;    ///< along the view direction
+    float aperture_radius = 0, focus_distance = 1, aperture_rotation = 0, aperture_ratio = 1;
+    uint32_t aperture_blades = 0;
 
     /// The ray through a point of the frame in pixels; a length of its direction is one unit of depth.
     Ray ray(Vec2 pixel) const;

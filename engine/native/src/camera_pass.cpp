@@ -37,7 +37,8 @@ Vec3 sample_source(const CameraPass &pass, const SurfacePoint &hit, const Lights
     if (pass.scene.occluded({hit.origin_above(), light->direction, 0, light->distance})) return {};
     // Emissive triangles can also be met by closure sampling, whose density is cosine / pi.
     const float weight = light->pdf > 0 ? power_heuristic(light->pdf * choice.probability, cosine / pi) : 1;
-    return hit.material->albedo * light->radiance * (cosine / pi * weight / choice.probability);
+    return albedo(shade(pass.scene, hit, hit.normal, {}), all_lobes) * light->radiance *
+           (cosine / pi * weight / choice.probability);
 }
 
 /// Light that a point receives straight from the lights and sends on.
@@ -73,7 +74,7 @@ void trace_path(const CameraPass &pass, SurfacePoint hit, Sequence &sequence, Pi
         const auto u = sequence.next();
         const Vec3 direction = Frame(hit.shading_normal).to_world(sample_cosine_hemisphere(u[0], u[1]));
         if (dot(direction, hit.normal) <= 0) return;
-        throughput *= hit.material->albedo;
+        throughput *= albedo(shade(pass.scene, hit, hit.normal, {}), all_lobes);
         if (max_component(throughput) <= 0) return;
         SurfacePoint next;
         ++rays;
@@ -82,7 +83,7 @@ void trace_path(const CameraPass &pass, SurfacePoint hit, Sequence &sequence, Pi
             const float pdf = dot(direction, hit.shading_normal) / pi;
             const float choice = asks_every_source(pass, vertex) ? 1 : pass.lights.triangles_probability(hit.position);
             const float weight = power_heuristic(pdf, choice * pass.lights.pdf(hit.position, next));
-            received += throughput * next.material->emission * weight;
+            received += throughput * shade(pass.scene, next, -direction, {}).emission * weight;
         }
         if (vertex == last_vertex) return;
 
@@ -121,9 +122,9 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
         }
     }
     if (!met) {
-        sample.emission += pass.lights.world();
+        sample.background = pass.lights.world();
         if (pass.film_transparent) {
-            sample.emission = Vec3();
+            sample.emission = sample.background = Vec3();
             sample.alpha = 0;
         }
         return sample;
@@ -132,9 +133,10 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
     sample.depth = hit.distance;
     sample.position = hit.position;
     sample.normal = hit.shading_normal;
-    sample.albedo = hit.material->albedo;
-    sample.emission = hit.material->emission;
-    if (max_component(hit.material->albedo) <= 0) return sample;
+    const Shading shading = shade(pass.scene, hit, -normalize(ray.direction), {});
+    sample.albedo = albedo(shading, all_lobes);
+    sample.emission = shading.emission;
+    if (max_component(sample.albedo) <= 0) return sample;
 
     trace_path(pass, hit, sequence, sample, rays);
     if (pass.gather && pass.gather->map->size() > 0) {
@@ -144,7 +146,7 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, uint64_
         Kernel kernel = gather.kernel;
         kernel.radius = disc.radius;
         const Vec3 irradiance = estimate_irradiance(*gather.map, *gather.edges, query, kernel).irradiance / disc.share;
-        sample.indirect = hit.material->albedo * irradiance / pi;
+        sample.indirect = sample.albedo * irradiance / pi;
     }
     return sample;
 }

@@ -4,6 +4,8 @@
 #include <bit>
 #include <utility>
 
+#include "sampling.h"
+
 namespace photon_maps {
 
 namespace {

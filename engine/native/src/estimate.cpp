@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "material.h"
+#include "closure.h"
 
 namespace photon_maps {
 

@@ -40,6 +40,10 @@ void Film::set(size_t pixel, const PixelSample &sample) {
     set(Buffer::emission, pixel, sample.emission);
     set(Buffer::direct, pixel, sample.direct);
     set(Buffer::indirect, pixel, sample.indirect);
+    set(Buffer::caustic, pixel, sample.caustic);
+    set(Buffer::background, pixel, sample.background);
+    if (std::vector<float> &density = buffers_[static_cast<size_t>(Buffer::photon_density)]; !density.empty())
+        density[pixel] = sample.photon_density;
 }
 
 void Film::add(const Film &pass) {

@@ -13,21 +13,34 @@
 namespace photon_maps {
 
 /// Buffers of a picture, numbered as pm_pass.
-enum class Buffer : uint32_t { combined, depth, normal, position, albedo, emission, direct, indirect };
-constexpr size_t buffer_count = 8;
-constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3};
+enum class Buffer : uint32_t {
+    combined,
+    depth,
+    normal,
+    position,
+    albedo,
+    emission,
+    direct,
+    indirect,
+    caustic,
+    background,
+    photon_density
+};
+constexpr size_t buffer_count = 11;
+constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3, 3, 3, 1};
 
 /// Depth where nothing is hit, as Blender has it.
 constexpr float no_depth = 1e10f;
 
 /// What one camera path brings to its pixel.
 struct PixelSample {
-    Vec3 emission, direct, indirect;  ///< radiance
+    Vec3 emission, background, direct, indirect, caustic;  ///< radiance
     float alpha = 1;
     float depth = no_depth;
     Vec3 normal, position, albedo;
+    float photon_density = 0;  ///< 1/m2
 
-    Vec3 radiance() const { return emission + direct + indirect; }
+    Vec3 radiance() const { return emission + background + direct + indirect + caustic; }
 };
 
 class Film {

@@ -25,12 +25,19 @@ Vec3 sample_triangle(const WorldTriangle &t, float u, float v) {
     return t.a * (1 - root) + t.b * (root * (1 - v)) + t.c * (root * v);
 }
 
+/// Radiance that a side of a triangle emits at its middle.
+Vec3 middle_emission(const Scene &scene, uint32_t instance, uint32_t triangle, Vec3 travel) {
+    const SurfacePoint middle = scene.surface_point(instance, triangle, 1.0f / 3, 1.0f / 3, travel);
+    return shade(scene, middle, middle.normal, {}).emission;
+}
+
 SceneSphere sphere_of(const Scene &scene) { return {scene.bounds().center(), scene.bounds().radius()}; }
 
 }  // namespace
 
-Lights::Lights(const Scene &scene, std::vector<Lamp> lamps, Vec3 world)
-    : scene_(scene), lamps_(std::move(lamps)), world_(world) {
+Lights::Lights(const Scene &scene, std::vector<Lamp> lamps, const World &world)
+    : scene_(scene), lamps_(std::move(lamps)) {
+    if (world.material) world_ = shade_world(scene, scene.materials[*world.material], {0, 0, 1}, {});
     find_emissive_triangles();
     const SceneSphere sphere = sphere_of(scene);
     for (const Lamp &lamp : lamps_) power_.push_back(emitted_power(lamp, sphere));
@@ -50,7 +57,7 @@ void Lights::find_emissive_triangles() {
             const Material &material = scene_.material(i, t);
             if (!material.emits()) continue;
             const WorldTriangle corners = scene_.world_triangle(i, t);
-            const float own_power = 2 * pi * area(corners) * average(material.emission);
+            const float own_power = 2 * pi * area(corners) * average(middle_emission(scene_, i, t, {0, 0, 1}));
             if (own_power <= 0) continue;
             power += own_power;
             cumulative.push_back(power);
@@ -116,7 +123,7 @@ size_t Lights::choose_emitter(double choice) const {
 std::optional<LightSample> Lights::sample_triangles(Vec3 position, float choice, float u, float v) const {
     const Emitter &emitter = triangles_[choose_emitter(choice)];
     const WorldTriangle corners = scene_.world_triangle(emitter.instance, emitter.triangle);
-    const Material &material = scene_.material(emitter.instance, emitter.triangle);
+    const Vec3 emission = middle_emission(scene_, emitter.instance, emitter.triangle, {0, 0, 1});
     const Vec3 to = sample_triangle(corners, u, v) - position;
     const float squared = length_squared(to);
     if (!(squared > 0)) return {};
@@ -125,15 +132,16 @@ std::optional<LightSample> Lights::sample_triangles(Vec3 position, float choice,
     const float cosine = std::abs(dot(direction, normalize(cross(corners.b - corners.a, corners.c - corners.a))));
     if (!(cosine > 0)) return {};
     // Chosen by power over area: density by area is radiance / total power, whatever the triangle.
-    const float pdf = 2 * pi * average(material.emission) / triangle_power_ * squared / cosine;
-    return LightSample{direction, distance * 0.9999f, material.emission / pdf, pdf};
+    const float pdf = 2 * pi * average(emission) / triangle_power_ * squared / cosine;
+    return LightSample{direction, distance * 0.9999f, emission / pdf, pdf};
 }
 
 float Lights::pdf(Vec3 position, const SurfacePoint &emitter) const {
     const Vec3 to = emitter.position - position;
     const float squared = length_squared(to);
     const float cosine = std::abs(dot(to, emitter.normal)) / std::sqrt(squared);
-    return 2 * pi * average(emitter.material->emission) / triangle_power_ * squared / cosine;
+    return 2 * pi * average(middle_emission(scene_, emitter.instance, emitter.triangle, {0, 0, 1})) / triangle_power_ *
+           squared / cosine;
 }
 
 std::optional<PhotonEmission> Lights::emit(Sequence &sequence) const {
@@ -169,7 +177,7 @@ PhotonEmission Lights::emit_from_triangle(float choice, float side, const std::a
     const Vec3 origin =
         sample_triangle(corners, u[2], u[3]) + normal * scene_.position_error(emitter.instance, emitter.triangle);
     // Radiance over the density that choosing by power gives: the colour of the whole power.
-    const Vec3 emission = scene_.material(emitter.instance, emitter.triangle).emission;
+    const Vec3 emission = middle_emission(scene_, emitter.instance, emitter.triangle, {0, 0, 1});
     return {{origin, direction}, emission * (triangle_power_ / average(emission)), {}};
 }
 
@@ -183,7 +191,7 @@ PhotonEmission Lights::emit_from_world(const std::array<float, 4> &u) const {
 std::optional<std::pair<Vec3, float>> Lights::seen(const Ray &ray, bool is_open) const {
     std::optional<std::pair<Vec3, float>> nearest;
     for (const Lamp &lamp : lamps_) {
-        if (!lamp.visible_to_camera) continue;
+        if (!(lamp.visibility & 1u << PM_RAY_CAMERA)) continue;
         const auto met = intersect_lamp(lamp, ray);
         if (!met) continue;
         const bool within = std::isinf(met->second) ? is_open : met->second > ray.near && met->second < ray.far;

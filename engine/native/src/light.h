@@ -24,7 +24,13 @@ struct Lamp {
     float spot_angle = 0, spot_blend = 0;
     float spread = pi;          ///< rectangle, ellipse: full angle
     bool soft_falloff = false;  ///< point, spot: scaled by d2/(d2 + r2)
-    bool visible_to_camera = false;
+    uint32_t visibility = 0;    ///< bits 1 << pm_ray
+};
+
+/// What surrounds the scene.
+struct World {
+    std::optional<uint32_t> material;  ///< whose emission it is; none: black
+    uint32_t visibility = ~0u;         ///< bits 1 << pm_ray
 };
 
 /// A direction towards a light, chosen with a known density.
@@ -47,8 +53,7 @@ struct PhotonEmission {
 /// All lights of a scene; the scene must outlive it.
 class Lights {
   public:
-    /// @param world radiance from everywhere outside
-    Lights(const Scene &scene, std::vector<Lamp> lamps, Vec3 world);
+    Lights(const Scene &scene, std::vector<Lamp> lamps, const World &world);
 
     bool empty() const { return total_power_ <= 0; }
     Vec3 world() const { return world_; }

@@ -22,9 +22,10 @@ Photon record(const SurfacePoint &hit, Vec3 direction, Vec3 flux, uint32_t bounc
 
 /// Leaves the surface by the cosine about the shading normal; nothing where that leads into the surface.
 /// `flux` becomes that of the scattered photon, before roulette.
-std::optional<Vec3> scatter(const SurfacePoint &hit, Vec3 arriving, const std::array<float, 4> &u, Vec3 &flux) {
+std::optional<Vec3> scatter(const Scene &scene, const SurfacePoint &hit, Vec3 arriving, const std::array<float, 4> &u,
+                            Vec3 &flux) {
     const Vec3 direction = Frame(hit.shading_normal).to_world(sample_cosine_hemisphere(u[0], u[1]));
-    flux *= hit.material->albedo;
+    flux *= albedo(shade(scene, hit, -arriving, {}), all_lobes);
     if (hit.shading_normal == hit.normal) return direction;
     const float leaving = dot(direction, hit.normal);
     const float ratio = shading_ratio(-dot(arriving, hit.shading_normal), -dot(arriving, hit.normal)) *
@@ -61,7 +62,7 @@ void trace_photon(const Scene &scene, const PhotonEmission &emission, Sequence &
         // Scatter it.
         const auto u = sequence.next();
         Vec3 scattered = flux;
-        const std::optional<Vec3> direction = scatter(hit, ray.direction, u, scattered);
+        const std::optional<Vec3> direction = scatter(scene, hit, ray.direction, u, scattered);
         if (!direction) scattered = Vec3();
         add(traced.balance.absorbed, flux - scattered);
         if (bounce == max_bounces) {

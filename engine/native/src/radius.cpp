@@ -48,7 +48,7 @@ float choose_first_radius(const Scene &scene, const Lights &lights, const Camera
         const auto u = sobol4(i, pilot.seed);
         SurfacePoint hit;
         const Vec2 pixel{u[0] * static_cast<float>(camera.frame_width), u[1] * static_cast<float>(camera.frame_height)};
-        if (first_hit(scene, camera, pixel, hit) && max_component(hit.material->albedo) > 0)
+        if (first_hit(scene, camera, pixel, hit) && (hit.material->traits.lobes & diffuse_lobes) != 0)
             ask(hit.position, hit.normal);
     }
     // Where the camera sees too little to judge by, ask around the photons themselves; without any, any radius will do.

@@ -153,8 +153,8 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     total.seconds_trace += spent.seconds_trace;
     total.seconds_build += spent.seconds_build;
     total.seconds_gather += spent.seconds_gather;
-    direct_photons_ = std::move(photons.direct);
-    indirect_photons_ = std::move(photons.indirect);
+    photons_[PM_PHOTONS_DIRECT] = std::move(photons.direct);
+    photons_[PM_PHOTONS_INDIRECT] = std::move(photons.indirect);
 }
 
 Vec3 Render::irradiance(const PhotonMap &map, Vec3 point, Vec3 normal) const {

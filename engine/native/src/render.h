@@ -20,6 +20,7 @@ struct RenderSettings {
     uint64_t photon_count;  ///< per pass; 0: as many as the frame has pixels, within bounds
     Kernel kernel;          ///< of the first pass; radius 0: chosen from pilot photons
     uint32_t max_bounces;
+    bool use_caustics, use_indirect;
     uint32_t seed;
     bool use_progressive;
     PixelFilter pixel_filter;
@@ -33,6 +34,9 @@ struct RenderStatistics {
     uint64_t photons_emitted = 0, photons_stored = 0, rays = 0;
     size_t peak_memory_bytes = 0;
     float radius_first = 0, radius_last = 0;
+    uint64_t caustic_photons = 0;
+    float caustic_radius_first = 0, caustic_radius_last = 0;
+    uint32_t caster_count = 0;
     FluxBalance balance;  ///< sum over the passes
     double seconds_trace = 0, seconds_build = 0, seconds_gather = 0;
 };
@@ -54,8 +58,7 @@ class Render {
     uint64_t photon_count() const { return photon_count_; }
 
     /// Photons of the last finished pass.
-    const std::vector<Photon> &direct_photons() const { return direct_photons_; }
-    const std::vector<Photon> &indirect_photons() const { return indirect_photons_; }
+    const std::vector<Photon> &photons(pm_photon_kind kind) const { return photons_[kind]; }
     /// Irradiance at a point from photons like those.
     Vec3 irradiance(const PhotonMap &map, Vec3 point, Vec3 normal) const;
     PhotonMap map_of(const std::vector<Photon> &photons) const;
@@ -77,7 +80,7 @@ class Render {
     std::optional<Coverage> coverage_;  ///< made along with the first radius, if above 0
     Film film_;
     RenderStatistics statistics_;
-    std::vector<Photon> direct_photons_, indirect_photons_;
+    std::array<std::vector<Photon>, 3> photons_;  ///< by pm_photon_kind
     float last_radius_ = 0;
     std::atomic<bool> cancel_ = false;
 };

@@ -18,7 +18,7 @@ rtc::Ray to_embree(const Ray &ray) {
             ray.direction.z,
             0,
             ray.far,
-            0xffffffffu,
+            ray.kinds,
             0,
             0};
 }
@@ -169,39 +169,49 @@ bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {
     if (rh.hit.geometry == rtc::invalid_id) return false;
 
     // A mesh of a single use is a geometry of the top scene; others are met through their instance.
-    hit.instance = rh.hit.instance == rtc::invalid_id ? rh.hit.geometry : rh.hit.instance;
-    hit.triangle = rh.hit.primitive;
+    const uint32_t instance = rh.hit.instance == rtc::invalid_id ? rh.hit.geometry : rh.hit.instance;
+    hit = surface_point(instance, rh.hit.primitive, rh.hit.u, rh.hit.v, ray.direction);
     hit.distance = rh.ray.tfar;
-    hit.material = &material(hit.instance, hit.triangle);
+    return true;
+}
+
+SurfacePoint Scene::surface_point(uint32_t instance_index, uint32_t triangle, float u, float v, Vec3 travel) const {
+    SurfacePoint hit;
+    hit.instance = instance_index;
+    hit.triangle = triangle;
+    hit.u = u;
+    hit.v = v;
+    hit.distance = 0;
+    hit.material = &material(instance_index, triangle);
+    const Instance &instance = instances[instance_index];
 
     // Position from the triangle, not from the distance: its error does not grow with the ray's length.
-    const WorldTriangle t = world_triangle(hit.instance, hit.triangle);
+    const WorldTriangle t = world_triangle(instance_index, triangle);
     const Vec3 ab = t.b - t.a, ac = t.c - t.a;
-    hit.position = t.a + ab * rh.hit.u + ac * rh.hit.v;
-    hit.error = position_error(hit.instance, hit.triangle);
+    hit.position = t.a + ab * u + ac * v;
+    hit.error = position_error(instance_index, triangle);
 
     // Geometric normal towards the ray; a triangle so thin that it has none takes the ray's own direction.
     const Vec3 n = cross(ab, ac);
     const float n_length = length(n);
-    hit.normal = n_length > 0 ? n / n_length : -normalize(ray.direction);
-    if (dot(hit.normal, ray.direction) > 0) hit.normal = -hit.normal;
+    hit.normal = n_length > 0 ? n / n_length : -normalize(travel);
+    if (n_length > 0 && instance.place.determinant() < 0) hit.normal = -hit.normal;  // mirrored: as in the object
+    hit.is_backfacing = dot(hit.normal, travel) > 0;
+    if (hit.is_backfacing) hit.normal = -hit.normal;
 
     // Shading normal on the same side.
     hit.shading_normal = hit.normal;
-    const Instance &instance = instances[hit.instance];
     const Mesh &mesh = meshes[instance.mesh];
     if (!mesh.corner_normals.empty()) {
-        const Vec3 *corners = &mesh.corner_normals[3 * size_t{hit.triangle}];
-        const Vec3 object_normal =
-            corners[0] * (1 - rh.hit.u - rh.hit.v) + corners[1] * rh.hit.u + corners[2] * rh.hit.v;
-        const Vec3 world_normal = instance.transform.normal(object_normal);
+        const Vec3 *corners = &mesh.corner_normals[3 * size_t{triangle}];
+        const Vec3 world_normal = instance.transform.normal(corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v);
         const float squared = length_squared(world_normal);
         if (squared > 0) {
             hit.shading_normal = world_normal / std::sqrt(squared);
             if (dot(hit.shading_normal, hit.normal) < 0) hit.shading_normal = -hit.shading_normal;
         }
     }
-    return true;
+    return hit;
 }
 
 bool Scene::occluded(const Ray &ray) const {

@@ -12,12 +12,21 @@
 
 #include "embree.h"
 #include "feature_edges.h"
-#include "material.h"
+#include "program.h"
+#include "texture.h"
 #include "vec.h"
 
 namespace photon_maps {
 
 using Triangle = std::array<uint32_t, 3>;
+
+/// Values that vary over a mesh (pm_attribute).
+struct Attribute {
+    uint32_t id;
+    pm_domain domain;
+    uint32_t channels;
+    std::vector<float> values;
+};
 
 /// Triangles in object space.
 struct Mesh {
@@ -25,17 +34,22 @@ struct Mesh {
     std::vector<Triangle> triangles;
     std::vector<uint32_t> slots;       ///< material slot of each triangle; empty: all 0
     std::vector<Vec3> corner_normals;  ///< three a triangle; empty: flat
-    uint32_t slot_count = 0;           ///< one more than the largest slot; 0 without triangles
-    uint32_t use_count = 0;            ///< instances that show it
+    std::vector<Attribute> attributes;
+    uint32_t slot_count = 0;  ///< one more than the largest slot; 0 without triangles
+    uint32_t use_count = 0;   ///< instances that show it
 
     size_t vertex_count() const { return vertices.size() - 1; }
 };
 
 /// A mesh where it stands.
 struct Instance {
-    uint32_t mesh;
-    uint32_t first_slot;  ///< into Scene::slot_materials
-    Transform transform;  ///< identity once a mesh that is used only here has been moved into world space
+    uint32_t mesh = 0;
+    uint32_t first_slot = 0;    ///< into Scene::slot_materials
+    Transform transform{};      ///< identity once a mesh that is used only here has been moved into world space
+    Transform place{};          ///< object to world, always
+    uint32_t visibility = ~0u;  ///< bits 1 << pm_ray
+    Rgba color{};               ///< the object's, for shaders; as are the next two
+    float index = 0, random = 0;
 };
 
 /// An axis-aligned box.
@@ -58,6 +72,7 @@ struct Bounds {
 struct Ray {
     Vec3 origin, direction;
     float near = 0, far = std::numeric_limits<float>::infinity();
+    uint32_t kinds = ~0u;  ///< bits 1 << pm_ray: surfaces that are visible to none of them are passed through
 };
 
 /// What a ray met.
@@ -68,6 +83,8 @@ struct SurfacePoint {
     float distance;       ///< in lengths of the ray's direction
     float error;          ///< bound of the position's rounding error, in scene units
     uint32_t instance, triangle;
+    float u, v;          ///< barycentric: weights of the triangle's second and third corner
+    bool is_backfacing;  ///< the ray came from behind, by the triangle's winding
     const Material *material;
 
     /// Where a ray that leaves to the side of `normal` may start without meeting the surface again.
@@ -91,6 +108,9 @@ class Scene {
     std::vector<Instance> instances;
     std::vector<uint32_t> slot_materials;
     std::vector<Material> materials;
+    std::vector<Image> images;
+    std::vector<Texture> textures;
+    std::vector<Table> tables;
 
     /// Ends the changes: moves meshes of a single use into world space and finds the bounds. Again: does nothing.
     /// @throws std::invalid_argument if an instance reaches beyond the coordinates that single precision bears
@@ -102,6 +122,9 @@ class Scene {
     void build(int threads, const std::atomic<bool> *cancel);
 
     bool intersect(const Ray &ray, SurfacePoint &hit) const;
+    /// The point of a triangle with barycentric coordinates u, v, as seen against a direction of travel; its distance
+    /// is 0.
+    SurfacePoint surface_point(uint32_t instance, uint32_t triangle, float u, float v, Vec3 travel) const;
     bool occluded(const Ray &ray) const;
 
     const Material &material(uint32_t instance, uint32_t triangle) const;

@@ -3,20 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "convert.h"
 
 namespace photon_maps {
 
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
 constexpr float min_radius = 1e-12f;    // its square is still a normal number
 constexpr float least_extent = 1e-15f;  // likewise
-
-void require_struct_size(size_t given, size_t expected, const char *name) {
-    require(given == expected, std::string(name) + " has struct_size " + std::to_string(given) + ", expected " +
-                                   std::to_string(expected) + ": the caller was built for another version");
-}
 
 /// A finite number in [low, high].
 void require_range(float value, float low, float high, const std::string &name) {
@@ -45,6 +40,11 @@ float column_length(const float *transform, int column) {
 
 }  // namespace
 
+void require_struct_size(size_t given, size_t expected, const char *name) {
+    require(given == expected, std::string(name) + " has struct_size " + std::to_string(given) + ", expected " +
+                                   std::to_string(expected) + ": the caller was built for another version");
+}
+
 void validate_count(uint64_t count, const std::string &name) {
     require(count < 0xffffffffu, "there may be at most 2^32 - 2 " + name + ", not " + std::to_string(count));
 }
@@ -58,6 +58,17 @@ void validate(const pm_mesh &mesh) {
     require_coordinates({mesh.vertices, 3 * mesh.vertex_count}, "vertices");
     require_indices({mesh.triangles, 3 * mesh.triangle_count}, mesh.vertex_count, "triangles");
     if (mesh.corner_normals) require_coordinates({mesh.corner_normals, 9 * mesh.triangle_count}, "corner_normals");
+    require(mesh.attributes || mesh.attribute_count == 0, "the mesh's attributes are null");
+    for (uint32_t a = 0; a < mesh.attribute_count; ++a) {
+        const pm_attribute &attribute = mesh.attributes[a];
+        const std::string name = "attribute " + std::to_string(a);
+        require_struct_size(attribute.struct_size, sizeof(pm_attribute), "pm_attribute");
+        require(attribute.domain <= PM_DOMAIN_FACE, name + ": unknown domain " + std::to_string(attribute.domain));
+        require(attribute.channels >= 1 && attribute.channels <= 4, name + ": channels are 1 to 4");
+        const size_t count = value_count(mesh, attribute);
+        require(attribute.values || count == 0, name + ": values are null");
+        require_coordinates({attribute.values, count}, name);
+    }
 }
 
 void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slots, size_t material_count) {
@@ -77,13 +88,6 @@ void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slot
                                                           std::to_string(end) + " entries of slot_materials, of " +
                                                           std::to_string(instances.slot_material_count));
     }
-}
-
-void validate(const pm_material &material, size_t index) {
-    const std::string name = "material " + std::to_string(index);
-    require_struct_size(material.struct_size, sizeof(pm_material), "pm_material");
-    for (const float v : material.albedo) require_range(v, 0, 1, name + ": albedo");
-    validate_radiance(material.emission, name + ": emission");
 }
 
 void validate(const pm_light &light, size_t index) {
@@ -111,7 +115,7 @@ void validate(const pm_light &light, size_t index) {
 
 void validate(const pm_camera &camera) {
     require_struct_size(camera.struct_size, sizeof(pm_camera), "pm_camera");
-    require(camera.type <= PM_CAMERA_ORTHOGRAPHIC, "camera: unknown type " + std::to_string(camera.type));
+    require(camera.type <= PM_CAMERA_EQUIRECTANGULAR, "camera: unknown type " + std::to_string(camera.type));
     require_coordinates(camera.transform, "camera: transform");
     for (int column = 0; column < 3; ++column)
         require(column_length(camera.transform, column) > least_extent,
@@ -126,6 +130,11 @@ void validate(const pm_camera &camera) {
             "camera: the resolution is beyond 65536 pixels");
     require(camera.clip_start >= 0 && camera.clip_end > camera.clip_start,
             "camera: clip_end must lie beyond clip_start, which may not be negative");
+    require_range(camera.aperture_radius, 0, max_coordinate, "camera: aperture_radius");
+    require(camera.aperture_radius == 0 || camera.focus_distance > 0, "camera: focus_distance must be above 0");
+    require_range(camera.aperture_rotation, -max_coordinate, max_coordinate, "camera: aperture_rotation");
+    require(camera.aperture_radius == 0 || (camera.aperture_ratio > 0 && std::isfinite(camera.aperture_ratio)),
+            "camera: aperture_ratio must be above 0");
 }
 
 void validate(const pm_settings &settings) {

@@ -29,10 +29,16 @@ void validate_count(uint64_t count, const std::string &name);
 void validate(const pm_mesh &mesh);
 /// @param mesh_slots number of material slots that each mesh uses
 void validate(const pm_instances &instances, std::span<const uint32_t> mesh_slots, size_t material_count);
-void validate(const pm_material &material, size_t index);
+void validate(const pm_image &image);
+void validate(const pm_texture &texture, size_t image_count);
+void validate(const pm_table &table);
+void validate(const pm_material &material, size_t index, size_t texture_count, size_t table_count);
 void validate(const pm_light &light, size_t index);
 void validate(const pm_camera &camera);
 void validate(const pm_settings &settings);
 void validate_radiance(std::span<const float> radiance, const std::string &name);
+
+/// Throws InvalidArgument unless the sizes of a struct agree.
+void require_struct_size(size_t given, size_t expected, const char *name);
 
 }  // namespace photon_maps

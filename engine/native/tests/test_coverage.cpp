@@ -60,7 +60,7 @@ struct World {
         : scene(std::make_shared<const Embree>(std::getenv("PHOTON_MAPS_EMBREE") ? std::getenv("PHOTON_MAPS_EMBREE")
                                                                                  : "")) {
         scene.meshes.push_back(std::move(mesh));
-        scene.instances.push_back({0, 0, {}});
+        scene.instances.emplace_back();
         scene.slot_materials = {0};
         scene.materials.resize(1);
         scene.freeze();

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closures of a surface point: how it scatters light. Lengths of directions are 1, all point away from the surface.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "vec.h"
+
+namespace photon_maps {
+
+/// Ways in which a closure scatters; sets of them are bits. Diffuse ones are carried by the photon maps, glossy ones,
+/// however rough, by the path: camera_pass.h has the table.
+enum Lobe : uint32_t {
+    diffuse_reflection = 1,
+    diffuse_transmission = 2,
+    glossy_reflection = 4,
+    glossy_transmission = 8,
+};
+using Lobes = uint32_t;
+constexpr Lobes diffuse_lobes = diffuse_reflection | diffuse_transmission;
+constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission;
+constexpr Lobes all_lobes = diffuse_lobes | glossy_lobes;
+
+/// What is carried along the path: radiance from the camera, or flux from the lights. Refraction from a medium of index
+/// n1 into one of n2, along the path, scales radiance by (n1 / n2)^2 and leaves flux as it is (Veach 1997,
+/// section 5.2).
+enum class Transport { radiance, flux };
+
+enum class ClosureType : uint8_t { diffuse, translucent, sheen, reflection, refraction, glass };
+
+/// One closure with the colour and weight it has at a point.
+struct Closure {
+    ClosureType type;
+    Vec3 weight;          ///< multiplies all that it scatters
+    Vec3 normal;          ///< unit, on the side that is seen
+    float roughness = 0;  ///< as the user gives it, 0 to 1
+};
+
+/// Largest ratio of the cosines to two normals that a photon may be weighted by.
+constexpr float max_shading_ratio = 8;
+
+/// Ratio of a direction's cosines to two normals. Photons land and leave by the geometric cosine; what the eye sees is
+/// shaded by the other (Veach 1997, section 5.3). The ratio itself is bounded, lest one grazing photon outshine all
+/// others: where the normals nearly agree it stays 1 at any angle.
+constexpr float shading_ratio(float wanted_cosine, float given_cosine) {
+    return std::max(wanted_cosine, 0.0f) < max_shading_ratio * given_cosine
+               ? std::max(wanted_cosine, 0.0f) / given_cosine
+               : (wanted_cosine > 0 ? max_shading_ratio : 0.0f);
+}
+
+constexpr size_t max_closures = 12;
+
+/// All that a surface point does to light that comes along one ray.
+struct Shading {
+    Vec3 outgoing;               ///< towards where the ray came from
+    Vec3 normal;                 ///< geometric, on that side
+    bool is_backfacing = false;  ///< that side is the back
+    Vec3 emission;               ///< radiance towards `outgoing`
+    Vec3 transparency;           ///< share of light that passes straight through, unscattered
+    float holdout = 0;           ///< share of the point that is a hole in the picture
+    uint32_t closure_count = 0;  ///< further closures are dropped
+    std::array<Closure, max_closures> closures;
+
+    std::span<const Closure> scattering() const { return {closures.data(), closure_count}; }
+};
+
+/// A direction drawn by the closures.
+struct ScatterSample {
+    Vec3 direction;
+    Vec3 weight;  ///< scattered share |cos| / density
+    float pdf;    ///< by solid angle, of all lobes asked for; 0 where the direction is singular
+    Lobe lobe;    ///< that it was drawn from
+    bool is_singular;
+};
+
+/// Returns the lobes that the closures have.
+Lobes lobes_of(const Shading &shading);
+
+/// Returns f |cos| for light between `outgoing` and `incoming`; singular closures give nothing.
+Vec3 evaluate(const Shading &shading, Lobes lobes, Vec3 incoming, Transport transport);
+
+/// Returns the density by solid angle with which sample() draws a direction.
+float pdf(const Shading &shading, Lobes lobes, Vec3 incoming);
+
+/// Draws a direction from the lobes asked for.
+/// @param u in [0, 1)
+/// @return nothing where the closures lead into the surface or there are none
+std::optional<ScatterSample> sample(const Shading &shading, Lobes lobes, const std::array<float, 3> &u,
+                                    Transport transport);
+
+/// Returns about which share of the light from `outgoing` the lobes scatter, 0 to 1: exact for Lambertian closures.
+Vec3 albedo(const Shading &shading, Lobes lobes);
+
+}  // namespace photon_maps
