@@ -124,7 +124,7 @@ def test_only_the_library_binding_knows_ctypes():
     }
     package = "engine/native/photon_maps_native"
     assert f"{package}/library.py" in users
-    assert users <= {f"{package}/library.py", f"{package}/structs.py"}
+    assert users <= {f"{package}/library.py", f"{package}/structs.py", f"{package}/convert.py"}
 
 
 def test_the_version_is_the_same_wherever_it_must_be_said():
