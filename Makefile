@@ -33,11 +33,12 @@ export BLEND OUT FRAME SIZE
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo package test test-native test-python lint format bench clean
+.PHONY: help demo package test test-native test-python test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
+	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
@@ -112,15 +113,19 @@ format: .venv/test.stamp
 test-native: build/native/stamp
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
 	cmake -S engine/native -B build/cmake/sanitize -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
-	    -DPHOTON_MAPS_SANITIZE=ON
+	    -DPHOTON_MAPS_SANITIZE=ON -DCMAKE_CXX_FLAGS_RELEASE=-O1
 	@for kind in release sanitize; do \
 	    cmake --build build/cmake/$$kind && \
-	    ctest --test-dir build/cmake/$$kind --output-on-failure --no-tests=error || exit 1; \
+	    ctest --test-dir build/cmake/$$kind --parallel $(JOBS) --output-on-failure --no-tests=error || exit 1; \
 	done
 
 test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	timeout 900 $(PYTHON) -m pytest tests --ignore=tests/blender
 	timeout 900 $(PYTHON) -m pytest tests/blender -o pythonpath=.  # without build/native: the wheels are the zip's
+
+test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
+	$(PYTHON) -m pytest tests --ignore=tests/blender -m campaign
+	$(PYTHON) -m pytest tests/blender -o pythonpath=. -m campaign
 
 bench: build/native/stamp .venv/system.stamp
 	@[ -e /usr/include/nanoflann.hpp ] || bash tools/apt_install.sh libnanoflann-dev

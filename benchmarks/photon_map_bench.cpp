@@ -30,7 +30,7 @@ struct Dataset {
 };
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Dataset>, Dataset, 3, uint32_t>;
 
-/// A result set that sums photons as estimate_irradiance does, without storing them.
+/// A result set that sums photons as estimate_photons does, without storing them.
 struct FluxSum {
     using DistanceType = float;
     const std::vector<Photon> &photons;
@@ -136,7 +136,7 @@ void compare_sums(const PhotonMap &map, const Tree &tree, const Scene &scene, do
                      found = 0;
                      for (const Place &place : places) {
                          const Kernel kernel{PM_FILTER_EPANECHNIKOV, place.radius_holding(photons), 1};
-                         found += estimate_irradiance(map, no_edges, place.query, kernel).photons;
+                         found += estimate_photons(map, no_edges, place.query, kernel).photons;
                      }
                  },
                  [&] {

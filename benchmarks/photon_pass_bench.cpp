@@ -141,8 +141,9 @@ void run(const char *path) {
     Scene scene(embree);
     fill_scene(scene);
     const Lights lights(scene, {ceiling_lamp()}, {});
+    const Emission emission(scene, lights);
     const auto pass = [&](int threads) {
-        return trace_photons(scene, lights, {0, photon_count, max_bounces, seed, threads}, nullptr);
+        return trace_photons(scene, emission, {0, photon_count, max_bounces, seed, threads}, nullptr);
     };
     const Recording recorded = rays_of(pass, *embree);
     const auto rays = static_cast<double>(recorded.rays.size());

@@ -15,7 +15,7 @@ from . import last_render
 from .messages import Messages
 from .passes import PASSES, PassInfo
 from .properties import render_settings
-from .settings import Stop
+from .settings import Integrator, Stop
 from .summary import Summary, summarize
 
 if TYPE_CHECKING:
@@ -78,6 +78,8 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
         picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
         _step_until_done(engine, session, picture)
         statistics = session.statistics()
+        if statistics.passes > 0 and settings.integrator == Integrator.PHOTON_MAP and statistics.caster_count == 0:
+            engine.update_stats("", "No glass, metal or gloss focuses light here: no caustic photons were traced")
         if statistics.passes == 0:
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)

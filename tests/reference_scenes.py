@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two scenes with converged pictures by other renderers: y is up, lengths are metres.
+"""Three scenes with converged pictures by other renderers: y is up, lengths are metres.
 
 ``data/<name>.npz`` holds ``radiance`` (256, 256, 3), rows from the top, and ``noise``, its own relMSE.
 """
@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from photon_maps_native import Color, Light, LightType, Mesh, Ray, SceneData, diffuse
+from photon_maps_native import Color, Light, LightType, Material, Mesh, Ray, SceneData, diffuse
+from photon_maps_native.shader import Input, Op, Shader
 
-from tests.shapes import camera, quad, scene
+from tests.shapes import camera, quad, scene, sphere
 
 RESOLUTION = 256
 #: A black plate so far behind the lamp makes its back opaque to every renderer.
@@ -20,11 +21,43 @@ PLATE_GAP = 0.002
 
 
 @dataclass(frozen=True)
+class Glass:
+    """A smooth dielectric body."""
+
+    ior: float
+
+
+@dataclass(frozen=True)
+class Metal:
+    """A mirror that reflects the same share at every angle."""
+
+    color: Color
+
+
+#: What a surface is made of; a colour is a diffuse one's.
+Substance = Color | Glass | Metal
+
+
+def substance_material(substance: Substance) -> Material:
+    """Return the program of a substance."""
+    if not isinstance(substance, Glass | Metal):
+        return diffuse(substance)
+    shader = Shader()
+    normal, smooth = shader.input(Input.NORMAL), shader.constant(0.0)
+    if isinstance(substance, Metal):
+        shader.close(Op.GLOSSY, shader.constant(substance.color), smooth, normal)
+    else:
+        white = shader.constant(1.0)
+        shader.close(Op.GLASS, white, white, smooth, shader.constant(substance.ior), normal)
+    return shader.material()
+
+
+@dataclass(frozen=True)
 class ReferenceScene:
-    """A diffuse scene with one rectangular lamp."""
+    """A scene with one rectangular lamp."""
 
     name: str
-    surfaces: list[tuple[Mesh, Color]]
+    surfaces: list[tuple[Mesh, Substance]]
     lamp_center: tuple[float, float, float]
     lamp_target: tuple[float, float, float]
     lamp_size: tuple[float, float]
@@ -51,7 +84,7 @@ class ReferenceScene:
     def data(self) -> SceneData:
         """Return the scene as arrays."""
         meshes = [mesh for mesh, _ in self.surfaces] + [self.plate()]
-        materials = [diffuse(color) for _, color in self.surfaces] + [diffuse((0.0, 0.0, 0.0))]
+        materials = [substance_material(substance) for _, substance in self.surfaces] + [diffuse((0.0, 0.0, 0.0))]
         half_angle = np.radians(self.field_of_view) / 2
         view = camera(self.eye, self.target, (RESOLUTION, RESOLUTION), half_angle)
         return scene(meshes, view, materials, [self.light()])
@@ -85,6 +118,32 @@ def tetrahedron(center: tuple[float, float, float], edge: float, degrees: float)
     corners = np.array([*base, (0.0, edge * np.sqrt(2 / 3), 0.0)])
     triangles = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.uint32)
     return Mesh(turned(corners, degrees, center), triangles)
+
+
+def glass_ball(center: tuple[float, float, float], radius: float) -> Mesh:
+    """Return a finely divided sphere with smooth normals."""
+    ball = sphere(radius, 128)
+    return Mesh(ball.vertices + np.float32(center), ball.triangles, corner_normals=ball.corner_normals)
+
+
+def band(lower: tuple[float, float], upper: tuple[float, float], slope: float, center: tuple[float, float]) -> Mesh:
+    """Return a surface of revolution about a vertical at (x, z), between two circles (radius, height).
+
+    :param slope: 1 for normals that point outwards, -1 inwards, 0 upwards
+    """
+    count = 256
+    angle = np.linspace(0, 2 * np.pi, count + 1)[:-1]
+    radial = np.stack([np.cos(angle), np.zeros(count), np.sin(angle)], -1)
+    up, middle = np.array([0.0, 1.0, 0.0]), np.array([center[0], 0.0, center[1]])
+    points = np.concatenate([middle + r * radial + h * up for r, h in (lower, upper)]).astype(np.float32)
+    normals = np.concatenate([slope * radial + (slope == 0) * up] * 2)
+    i = np.arange(count)
+    j = (i + 1) % count
+    triangles = np.concatenate([np.stack([i, i + count, j + count], -1), np.stack([i, j + count, j], -1)])
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    if (np.cross(b - a, c - a) * normals[triangles[:, 0]]).sum() < 0:
+        triangles = triangles[:, ::-1]
+    return Mesh(points, triangles.astype(np.uint32), corner_normals=normals[triangles].astype(np.float32))
 
 
 WHITE, RED, GREEN, GREY = (0.725, 0.71, 0.68), (0.63, 0.065, 0.05), (0.14, 0.45, 0.091), (0.7, 0.7, 0.7)
@@ -127,7 +186,27 @@ SEED = ReferenceScene(
     field_of_view=36,
 )
 
-REFERENCE_SCENES = {scene.name: scene for scene in (CORNELL, SEED)}
+RING, BRASS = (-0.42, 0.2), Metal((0.9, 0.8, 0.6))
+
+CAUSTIC = ReferenceScene(
+    name="caustic",
+    surfaces=[
+        *CORNELL.surfaces[:5],
+        (glass_ball((0.45, 0.36, 0.3), 0.35), Glass(1.5)),
+        (band((0.36, 0.0), (0.36, 0.28), -1.0, RING), BRASS),
+        (band((0.38, 0.0), (0.38, 0.28), 1.0, RING), BRASS),
+        (band((0.36, 0.28), (0.38, 0.28), 0.0, RING), BRASS),
+    ],
+    lamp_center=(0.45, 1.98, -0.3),
+    lamp_target=(0.45, 0, -0.3),
+    lamp_size=(0.2, 0.2),
+    lamp_radiance=(100, 90, 75),
+    eye=(0, 1.15, 3.9),
+    target=(0, 0.85, 0),
+    field_of_view=35,
+)
+
+DIFFUSE_SCENES = {scene.name: scene for scene in (CORNELL, SEED)}
 
 
 def relative_mean_square_error(picture: np.ndarray, reference: np.ndarray) -> float:

@@ -56,6 +56,29 @@ def sphere(radius: float, rings: int) -> Mesh:
     return Mesh((radius * normals).astype(np.float32), triangles.astype(np.uint32), corner_normals=corner_normals)
 
 
+def revolved(radii: np.ndarray, heights: np.ndarray, normals: np.ndarray | None = None, segments: int = 96) -> Mesh:
+    """Return the surface that a profile sweeps about z; it winds to the profile's left, so downwards along z it winds
+    outwards.
+
+    :param normals: (N, 2) smooth normals of the profile's points, radial and along z; None: flat
+    """
+    phi = np.linspace(0, 2 * np.pi, segments + 1)[:-1]
+    around = np.stack([np.cos(phi), np.sin(phi)], -1)
+
+    def swept(radial: np.ndarray, along: np.ndarray) -> np.ndarray:
+        flat = radial[:, None, None] * around
+        return np.concatenate([flat, np.broadcast_to(along[:, None, None], (len(along), segments, 1))], -1).reshape(
+            -1, 3
+        )
+
+    i, j = np.meshgrid(np.arange(len(radii) - 1), np.arange(segments), indexing="ij")
+    a, b = (i * segments + j).ravel(), (i * segments + (j + 1) % segments).ravel()
+    triangles = np.concatenate([np.stack([a, a + segments, b + segments], 1), np.stack([a, b + segments, b], 1)])
+    corner_normals = None if normals is None else swept(normals[:, 0], normals[:, 1])[triangles].astype(np.float32)
+    vertices = swept(np.asarray(radii, float), np.asarray(heights, float)).astype(np.float32)
+    return Mesh(vertices, triangles.astype(np.uint32), corner_normals=corner_normals)
+
+
 def look_at(position: Sequence[float], target: Sequence[float]) -> np.ndarray:
     """Return a camera or lamp matrix (3, 4) whose local -z points from the position to the target."""
     position = np.asarray(position, float)

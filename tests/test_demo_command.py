@@ -152,7 +152,7 @@ def test_the_packaged_extension_renders_the_demo_scene(tmp_path):
     assert len(rows) == height * (1 + 3 * width)  # one byte for each row's filter
     assert len(set(rows)) > 50  # of 256: a picture, not a plain colour
     (line,) = [line for line in result.stdout.splitlines() if line.startswith("photon_maps: ")]
-    assert json.loads(line.removeprefix("photon_maps: "))["photons_stored"] > 0
+    assert json.loads(line.removeprefix("photon_maps: "))["caustic_photons"] > 0
 
 
 def test_renders_a_file_at_its_own_frame_and_resolution(stand_in, files, tmp_path):

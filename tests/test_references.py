@@ -9,15 +9,15 @@ from photon_maps_native import LightType, Mesh, diffuse
 
 from engine.passes import Pass
 from engine.settings import Integrator
-from tests.reference_scenes import REFERENCE_SCENES, bias, relative_mean_square_error
+from tests.reference_scenes import CAUSTIC, DIFFUSE_SCENES, bias, relative_mean_square_error
 from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene
 
 
-@pytest.mark.parametrize("name", REFERENCE_SCENES)
+@pytest.mark.parametrize("name", DIFFUSE_SCENES)
 def test_the_error_of_photon_maps_falls_with_the_passes(name: str) -> None:
     """Knaus and Zwicker's radius: the mean squared error falls with the passes to the power of -2/3, at first faster
     (noise of the first kernels), at last to the noise of the reference."""
-    room = REFERENCE_SCENES[name]
+    room = DIFFUSE_SCENES[name]
     reference, noise = room.reference()
     picture = Picture(room.data(), box_filtered(max_bounces=64))
     errors = []
@@ -30,6 +30,21 @@ def test_the_error_of_photon_maps_falls_with_the_passes(name: str) -> None:
     assert slopes[2] < -0.4
     assert errors[-1] < 2e-4
     assert abs(bias(pixels, reference)) < 0.003
+
+
+def test_caustics_of_glass_and_metal_agree_with_the_reference() -> None:
+    """A glass ball and a metal ring under a small lamp: light that path tracing hardly finds."""
+    reference, noise = CAUSTIC.reference()
+    picture = Picture(CAUSTIC.data(), box_filtered(max_bounces=64))
+    errors = []
+    for passes in (1, 4, 16):
+        done = picture.render.statistics().passes
+        pixels = picture.run(passes - done, first=done).pixels()
+        errors.append(relative_mean_square_error(pixels, reference) - noise)
+    assert (np.diff(np.log(errors)) / np.log(4) < -0.4).all()
+    assert errors[-1] < 0.003
+    assert abs(bias(pixels, reference)) < 0.01
+    assert pixels.mean((0, 1)) == pytest.approx(reference.mean((0, 1)), rel=0.01)
 
 
 def test_a_small_object_in_a_wide_scene_keeps_its_indirect_light() -> None:
@@ -61,9 +76,9 @@ def test_thousands_of_loose_leaves_are_gathered() -> None:
     assert photons == pytest.approx(paths, rel=0.05)
 
 
-@pytest.mark.parametrize("name", REFERENCE_SCENES)
+@pytest.mark.parametrize("name", DIFFUSE_SCENES)
 def test_path_tracing_agrees_with_the_reference(name: str) -> None:
-    room = REFERENCE_SCENES[name]
+    room = DIFFUSE_SCENES[name]
     reference, _ = room.reference()
     pixels = Picture(room.data(), box_filtered(integrator=Integrator.PATH_TRACING, max_bounces=64)).run(32).pixels()
     assert abs(bias(pixels, reference)) < 0.003

@@ -150,7 +150,7 @@ def open_file(blend: Path | None) -> None:
         blend.parent.mkdir(exist_ok=True)
         bpy.context.preferences.filepaths.save_version = 0  # no demo.blend1
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-        importlib.import_module(f"{EXTENSION}.operators.demo_scenes").room()
+        importlib.import_module(f"{EXTENSION}.operators.demo_caustics").caustics()
         bpy.ops.wm.save_as_mainfile(filepath=str(blend), check_existing=False)
     try:
         bpy.ops.wm.open_mainfile(filepath=str(blend), load_ui=False)

@@ -30,6 +30,8 @@ ADDED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_WORLD_PT_surface",
     "DATA_PT_EEVEE_light",
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
 }
 
 

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 import bpy
 
 from ..engine import last_render
+from ..engine.export.panorama import panorama_settings
 from ..engine.passes import PASSES
 from ..engine.render_engine import PhotonMapsEngine
 
@@ -45,6 +46,10 @@ class PHOTON_MAPS_PT_method(_Panel, bpy.types.Panel):
             box.label(text="Install the extension again from its zip.")
         column.prop(settings, "integrator")
         column.prop(settings, "max_bounces")
+        parts = column.column(heading="Photons For")
+        parts.active = settings.integrator == "PHOTON_MAP"
+        parts.prop(settings, "use_caustics")
+        parts.prop(settings, "use_indirect")
         column.prop(settings, "seed")
 
 
@@ -177,6 +182,29 @@ class PHOTON_MAPS_PT_beam(_Panel, bpy.types.Panel):
         self.column().prop(context.light, "spread")
 
 
+class PHOTON_MAPS_PT_panorama(_Panel, bpy.types.Panel):
+    bl_label = "Panorama"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.camera is not None and context.camera.type == "PANO"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column, settings = self.column(), panorama_settings(context.camera)
+        if settings is None:
+            column.label(text="Enable the Cycles add-on to limit it.")
+            return
+        column.prop(settings, "panorama_type")
+        if settings.panorama_type == "EQUIRECTANGULAR":
+            for name in ("latitude_min", "latitude_max", "longitude_min", "longitude_max"):
+                column.prop(settings, name)
+
+
+#: Objects that rays meet, by themselves or by what they show.
+SEEN_BY_RAYS = {"MESH", "CURVE", "SURFACE", "FONT", "META", "LIGHT"}
+
+
 class PHOTON_MAPS_PT_ray_visibility(_Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -184,10 +212,31 @@ class PHOTON_MAPS_PT_ray_visibility(_Panel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and context.object is not None and context.object.type == "LIGHT"
+        seen = context.object
+        return super().poll(context) and seen is not None and (seen.type in SEEN_BY_RAYS or seen.is_instancer)
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.column().prop(context.object, "visible_camera", text="Camera")
+        column = self.column()
+        for ray in ("camera", "diffuse", "glossy", "transmission"):
+            column.prop(context.object, f"visible_{ray}", text=ray.title())
+        if context.object.type != "LIGHT":  # shadow rays do not meet lamps
+            column.prop(context.object, "visible_shadow", text="Shadow")
+
+
+class PHOTON_MAPS_PT_world_visibility(_Panel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        # The settings are the Cycles add-on's.
+        return super().poll(context) and hasattr(context.world, "cycles_visibility")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        for ray in ("camera", "diffuse", "glossy", "transmission"):
+            column.prop(context.world.cycles_visibility, ray)
 
 
 CLASSES = (
@@ -200,7 +249,9 @@ CLASSES = (
     PHOTON_MAPS_PT_passes,
     PHOTON_MAPS_PT_surface,
     PHOTON_MAPS_PT_beam,
+    PHOTON_MAPS_PT_panorama,
     PHOTON_MAPS_PT_ray_visibility,
+    PHOTON_MAPS_PT_world_visibility,
 )
 
 

@@ -3,38 +3,137 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 import numpy as np
+from mathutils import Matrix
 from photon_maps_native.scene_data import Camera, CameraType
 
 from ..messages import Messages
+from .panorama import panorama_settings
+
+#: Blender's least f-number, as Cycles takes it.
+LEAST_FSTOP = 1e-5
+LEAST_FOCUS_DISTANCE = 1e-5
+FULL_SPHERE = (-math.pi, math.pi, -0.5 * math.pi, 0.5 * math.pi)
+
+TYPES = {
+    "PERSP": CameraType.PERSPECTIVE,
+    "ORTHO": CameraType.ORTHOGRAPHIC,
+    "PANO": CameraType.EQUIRECTANGULAR,
+}
 
 
 def read_camera(camera: bpy.types.Object, depsgraph: bpy.types.Depsgraph, messages: Messages) -> Camera:
     """Copy the evaluated camera object and the frame of the scene's render settings."""
     render = depsgraph.scene_eval.render
     data = camera.data
-    if data.type not in {"PERSP", "ORTHO"}:
+    if data.type not in TYPES:
         messages.add(
             camera.name,
-            "is neither perspective nor orthographic; it is rendered as a perspective camera.",
-            "Set the camera's type to Perspective or Orthographic.",
+            f"is of the type {data.type}, which is not supported; it is rendered as a perspective camera.",
+            "Set the camera's type to Perspective, Orthographic or Panoramic.",
         )
-    if data.dof.use_dof:
-        messages.add(camera.name, "has depth of field, which is left out.")
-    orthographic = data.type == "ORTHO"
+    type = TYPES.get(data.type, CameraType.PERSPECTIVE)
     resolution = frame_resolution(render)
-    # As Cycles: a camera's scale does not count.
-    transform = np.array(camera.matrix_world.normalized(), dtype=np.float32)[:3]
+    if type == CameraType.EQUIRECTANGULAR:
+        window = _panorama_window(camera, messages)
+    else:
+        window = _window(camera, depsgraph, render, resolution, type == CameraType.ORTHOGRAPHIC)
+    clip_start, clip_end = _clip_distances(camera, messages)
     return Camera(
-        type=CameraType.ORTHOGRAPHIC if orthographic else CameraType.PERSPECTIVE,
-        transform=transform,
-        window=_window(camera, depsgraph, render, resolution, orthographic),
+        type=type,
+        transform=np.array(_stand(camera), dtype=np.float32)[:3],
+        window=window,
         resolution=resolution,
         region=frame_region(render, resolution),
-        clip_start=data.clip_start,
-        clip_end=data.clip_end,
+        clip_start=clip_start,
+        clip_end=clip_end,
+        **_lens(camera, type, messages),
     )
+
+
+def _stand(camera: bpy.types.Object) -> Matrix:
+    """Return camera to world; as in Cycles, a camera's scale does not count."""
+    return camera.matrix_world.normalized()
+
+
+def _clip_distances(camera: bpy.types.Object, messages: Messages) -> tuple[float, float]:
+    start, end = camera.data.clip_start, camera.data.clip_end
+    if not end > start:
+        messages.add(
+            camera.name,
+            "has a Clip End that is not beyond its Clip Start, so it sees nothing but the world.",
+            "Raise its Clip End.",
+        )
+        end = float(np.nextafter(np.float32(start), np.float32(np.inf)))
+    return start, end
+
+
+def _lens(camera: bpy.types.Object, type: CameraType, messages: Messages) -> dict:
+    """Return the aperture and what it focuses on, as Cycles understands them (blender/camera.cpp).
+
+    The f-number divides the focal length, which is in millimetres of a scene in metres whatever its unit scale;
+    an orthographic camera has none, and 1 m stands for it.
+    """
+    dof = camera.data.dof
+    if not dof.use_dof:
+        return {}
+    focal_length = 1.0 if type == CameraType.ORTHOGRAPHIC else camera.data.lens * 1e-3
+    distance = _focus_distance(camera)
+    if not distance > LEAST_FOCUS_DISTANCE:
+        messages.add(camera.name, "is focused on a distance of 0, so nothing is in focus.", "Raise its Focus Distance.")
+        distance = LEAST_FOCUS_DISTANCE
+    return {
+        "aperture_radius": 0.5 * focal_length / max(dof.aperture_fstop, LEAST_FSTOP),
+        "focus_distance": distance,
+        "aperture_rotation": dof.aperture_rotation,
+        "aperture_ratio": dof.aperture_ratio,
+        "aperture_blades": dof.aperture_blades,
+    }
+
+
+def _focus_distance(camera: bpy.types.Object) -> float:
+    """Return the distance along the view direction, to the object or bone that is focused on if there is one."""
+    dof = camera.data.dof
+    target = dof.focus_object
+    if target is None:
+        return dof.focus_distance
+    place = target.matrix_world
+    bone = target.pose.bones.get(dof.focus_subtarget) if target.pose and dof.focus_subtarget else None
+    if bone is not None:
+        place = place @ bone.matrix
+    stand = _stand(camera)
+    return abs(stand.col[2].xyz.dot(stand.translation - place.translation))
+
+
+def _panorama_window(camera: bpy.types.Object, messages: Messages) -> tuple[float, float, float, float]:
+    """Return the range of longitude and latitude that the frame shows."""
+    data = camera.data
+    settings = panorama_settings(data)
+    if settings is None:
+        return FULL_SPHERE
+    if settings.panorama_type != "EQUIRECTANGULAR":
+        messages.add(
+            camera.name,
+            f"is a panorama of the type {settings.panorama_type}, which is not supported; it is rendered"
+            " equirectangular.",
+            "Set its Panorama Type to Equirectangular.",
+        )
+        return FULL_SPHERE
+    left, right = settings.longitude_min, settings.longitude_max
+    bottom, top = settings.latitude_min, settings.latitude_max
+    if not (left < right and bottom < top):
+        messages.add(
+            camera.name,
+            "shows a range of longitude or latitude that is empty or reversed; all of the sphere is rendered.",
+            "Set each maximum above its minimum.",
+        )
+        return FULL_SPHERE
+    # The shift counts in widths of the frame.
+    across, up = data.shift_x * (right - left), data.shift_y * (top - bottom)
+    return left + across, right + across, bottom + up, top + up
 
 
 def frame_resolution(render: bpy.types.RenderSettings) -> tuple[int, int]:

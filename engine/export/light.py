@@ -9,10 +9,12 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 from photon_maps_native.scene_data import MAX_RADIANCE, Light, LightType, Ray
+from photon_maps_native.shader import Op
 
 from ..messages import Messages
 from .material import TARGET, checked
-from .nodes import ConstantReader, Port, source
+from .nodes import Compiler, ProgramTooLong
+from .resources import Resources
 
 #: What sheared or stretched lamps may be off a right angle or a circle before it is named.
 SHAPE_TOLERANCE = 1e-3
@@ -29,10 +31,11 @@ AREA_TYPES = {
 }
 
 
-def read_light(lamp: bpy.types.Object, matrix: Matrix, messages: Messages) -> Light | None:
+def read_light(lamp: bpy.types.Object, matrix: Matrix, visibility: int, messages: Messages) -> Light | None:
     """Copy one instance of an evaluated lamp.
 
     :param matrix: lamp to world.
+    :param visibility: what it is visible to, bits of Ray; shadow rays do not meet lamps.
     :return: None if it does not shine.
     """
     data = lamp.data
@@ -57,7 +60,7 @@ def read_light(lamp: bpy.types.Object, matrix: Matrix, messages: Messages) -> Li
     return Light(
         transform=transform,
         power=tuple(float(channel) for channel in power),
-        visibility=Ray.ALL if lamp.visible_camera else Ray.ALL & ~Ray.CAMERA,
+        visibility=Ray(visibility),
         **shape,
     )
 
@@ -80,18 +83,24 @@ def _power(data: bpy.types.Light, messages: Messages) -> np.ndarray:
 def _node_emission(data: bpy.types.Light, messages: Messages) -> np.ndarray:
     """Return (3,): by what the lamp's nodes multiply its power."""
     output = data.node_tree.get_output_node(TARGET)
-    port = source(Port(output.inputs["Surface"])) if output else None
-    if port is None or not port.socket.is_output:
+    if output is None:
         return np.zeros(3)
-    reader = ConstantReader(data.name, messages)
-    if port.node.bl_idname != "ShaderNodeEmission":
-        reader.name(
-            port.node,
-            f"({port.node.bl_label}) is not supported in a light; the nodes are left out.",
-            "Use one Emission node.",
-        )
-        return np.ones(3)
-    return reader.color(port.input("Color")) * reader.number(port.input("Strength"))
+    emission = _constant_emission(Compiler(data.name, Resources(), messages), output)
+    if emission is None:
+        text = "has nodes that are not evaluated in a lamp; the values in the sockets are used instead."
+        messages.add(data.name, text, "Use an emissive mesh, or an Emission node without textures.")
+        emission = _constant_emission(Compiler(data.name, Resources(), Messages(), is_constant=True), output)
+    return np.ones(3) if emission is None else emission
+
+
+def _constant_emission(compiler: Compiler, output: bpy.types.Node) -> np.ndarray | None:
+    """Return the sum (3,) of what is emitted, or None if it is not the same everywhere."""
+    try:
+        compiler.surface(output, "Surface", compiler.constant(1.0))
+    except (ProgramTooLong, RecursionError):
+        return None
+    weights = [compiler.known(arguments[0]) for op, arguments in compiler.closures if op == Op.EMISSION]
+    return None if any(weight is None for weight in weights) else np.sum([np.zeros(3), *weights], axis=0)
 
 
 def _rigid(axes: np.ndarray, name: str, type: str, messages: Messages) -> tuple[np.ndarray, np.ndarray]:

@@ -1,41 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials: a shader node tree is folded into the closure that the helper knows, a diffuse surface that may shine."""
+"""Materials: what of a material is compiled, and what is said where there is nothing to compile."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-
 import bpy
 import numpy as np
-from photon_maps_native import MAX_RADIANCE, Color, Material, diffuse
+from photon_maps_native import Color, Material, diffuse
+from photon_maps_native.shader import Op, PrincipledArgument
 
 from ..messages import Messages
-from .nodes import ConstantReader, Port, shader_tree, source
+from .default_surface import default_surface
+from .nodes import Compiler, Port, ProgramTooLong, shader_tree, source
+from .resources import Resources
 
-DEFAULT_ALBEDO = (0.8, 0.8, 0.8)  # Blender's grey for faces without a material
 TARGET = "CYCLES"  # the Material Outputs that are followed are those for all engines and for Cycles
-
-
-@dataclass
-class Surface:
-    """What is left of a node tree: the weights of its closures."""
-
-    diffuse: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    emission: np.ndarray = field(default_factory=lambda: np.zeros(3))
-
-    def __add__(self, other: Surface) -> Surface:
-        return Surface(self.diffuse + other.diffuse, self.emission + other.emission)
-
-    def scaled(self, weight: float) -> Surface:
-        return Surface(self.diffuse * weight, self.emission * weight)
+BLACK = (0.0, 0.0, 0.0)
+#: Scatterings that the helper keeps of a point.
+MAX_SCATTERINGS = 12
+WITHOUT_SCATTERING = {Op.TRANSPARENT, Op.EMISSION, Op.HOLDOUT}
+#: What the Principled BSDF scatters by besides its diffuse base and its gloss.
+LAYERS = (
+    PrincipledArgument.METALLIC,
+    PrincipledArgument.TRANSMISSION,
+    PrincipledArgument.COAT,
+    PrincipledArgument.SHEEN,
+)
 
 
 class MaterialTable:
     """The materials of a scene in the order of their first use; number 0 is Blender's default grey."""
 
-    def __init__(self, messages: Messages) -> None:
-        self.materials = [diffuse(DEFAULT_ALBEDO)]
+    def __init__(self, resources: Resources, messages: Messages) -> None:
+        self.materials = [default_surface()]
+        self.resources = resources
         self._indices: dict[int, int] = {}
         self._messages = messages
 
@@ -45,29 +42,67 @@ class MaterialTable:
             return 0
         key = material.as_pointer()
         if key not in self._indices:
-            self._indices[key] = len(self.materials)
-            self.materials.append(read_material(material, self._messages))
+            read = read_material(material, self.resources, self._messages)
+            self._indices[key] = self.add(read)
         return self._indices[key]
 
+    def add(self, material: Material) -> int:
+        """Append a material that is none of Blender's, such as the world's, and return its number."""
+        self.materials.append(material)
+        return len(self.materials) - 1
 
-def read_material(material: bpy.types.Material, messages: Messages) -> Material:
-    """Fold a material; what it cannot hold is named in the messages."""
+
+def read_material(material: bpy.types.Material, resources: Resources, messages: Messages) -> Material:
+    """Compile a material; what of it is not rendered as Cycles does is named in the messages."""
     tree = shader_tree(material)
     if tree is None:
-        return diffuse(albedo=checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages))
+        color = checked(np.array(material.diffuse_color[:3]), 1.0, material.name, "colour", messages)
+        return diffuse(albedo=color)
     output = tree.get_output_node(TARGET)
     if output is None:
         messages.add(material.name, "has no Material Output node, so it is black.", "Add a Material Output.")
-        return diffuse(albedo=(0.0, 0.0, 0.0))
-    reader = ConstantReader(material.name, messages)
-    for name in ("Volume", "Displacement"):
-        if reader.is_linked(Port(output.inputs[name])):
-            messages.add(material.name, f"has a {name.lower()}, which is left out.")
-    surface = fold(reader, Port(output.inputs["Surface"]))
-    return diffuse(
-        albedo=checked(surface.diffuse, 1.0, material.name, "diffuse colour", messages),
-        emission=checked(surface.emission, MAX_RADIANCE, material.name, "emission", messages),
-    )
+        return diffuse(albedo=BLACK)
+    if any(node.bl_idname == "ShaderNodeOutputAOV" for node in tree.nodes):
+        messages.add(material.name, "has AOV Output nodes, which are left out: there are no such passes.")
+    return compile_output(output, material.name, resources, messages, index=material.pass_index)
+
+
+def compile_output(
+    output: bpy.types.Node,
+    owner: str,
+    resources: Resources,
+    messages: Messages,
+    is_world: bool = False,
+    index: int = 0,
+) -> Material:
+    """Compile what arrives at the Surface of an output node; its other inputs are named."""
+    for socket in output.inputs:
+        if socket.name in {"Volume", "Displacement"} and source(Port(socket))[0].socket.is_output:
+            messages.add(owner, f"has a {socket.name.lower()}, which is left out.")
+    for is_constant in (False, True):
+        compiler = Compiler(owner, resources, messages, is_world, is_constant)
+        try:
+            compiler.surface(output, "Surface", compiler.constant(1.0))
+        except (ProgramTooLong, RecursionError):
+            text = "has more nodes than fit in a shader; it is rendered " + (
+                "grey." if is_constant else "with the values that are set in the sockets, without what computes them."
+            )
+            messages.add(owner, text, "Bake what it computes into images.")
+        else:
+            _name_crowd(compiler)
+            return compiler.shader.material(index)
+    return default_surface()
+
+
+def _name_crowd(compiler: Compiler) -> None:
+    count = 0
+    for op, arguments in compiler.closures:
+        count += op not in WITHOUT_SCATTERING
+        if op == Op.PRINCIPLED:
+            count += 1 + sum(not compiler.is_zero(arguments[layer]) for layer in LAYERS)
+    if count > MAX_SCATTERINGS:
+        text = f"mixes more closures than the {MAX_SCATTERINGS} that fit at one point; the last may be left out."
+        compiler.messages.add(compiler.owner, text, "Mix the colours of fewer shaders.")
 
 
 def checked(value: np.ndarray, maximum: float, owner: str, meaning: str, messages: Messages) -> Color:
@@ -77,90 +112,3 @@ def checked(value: np.ndarray, maximum: float, owner: str, meaning: str, message
         text = f"has a {meaning} that is not between 0 and {maximum:g}; it is clamped."
         messages.add(owner, text, "Correct the colour or strength.")
     return tuple(float(channel) for channel in clamped)
-
-
-def fold(reader: ConstantReader, port: Port) -> Surface:
-    """Return the closures that arrive at a shader socket, as their weights."""
-    origin = source(port)
-    if not origin.socket.is_output:
-        return Surface()
-    if origin.socket.type != "SHADER":  # Blender turns a colour in a shader socket into emission
-        return Surface(emission=reader.color(port))
-    return CLOSURES.get(origin.node.bl_idname, _nearest_diffuse)(reader, origin)
-
-
-def _diffuse(reader: ConstantReader, port: Port) -> Surface:
-    if reader.number(port.input("Roughness")) > 0.0:
-        reader.name(port.node, "is rough (Oren-Nayar); it is rendered as a Lambertian surface.")
-    _name_normal(reader, port)
-    return Surface(diffuse=reader.color(port.input("Color")))
-
-
-def _emission(reader: ConstantReader, port: Port) -> Surface:
-    return Surface(emission=reader.color(port.input("Color")) * reader.number(port.input("Strength")))
-
-
-def _principled(reader: ConstantReader, port: Port) -> Surface:
-    left_out = [meaning for socket, meaning in PRINCIPLED_LEFT_OUT.items() if _weight(reader, port, socket) > 0.0]
-    if _weight(reader, port, "Alpha", absent=1.0) < 1.0:
-        left_out.append("transparency")
-    if left_out:
-        reader.name(port.node, f"is rendered as its diffuse base colour, without {', '.join(left_out)}.")
-    _name_normal(reader, port)
-    strength = _weight(reader, port, "Emission Strength")
-    shine = reader.color(port.input("Emission Color")) * strength if strength else np.zeros(3)
-    return Surface(diffuse=reader.color(port.input("Base Color")), emission=shine)
-
-
-#: Weights of the Principled BSDF's other closures, and what they are called.
-PRINCIPLED_LEFT_OUT = {
-    "Metallic": "metallic reflection",
-    "Specular IOR Level": "specular reflection",
-    "Transmission Weight": "transmission",
-    "Subsurface Weight": "subsurface scattering",
-    "Coat Weight": "coat",
-    "Sheen Weight": "sheen",
-    "Thin Film Thickness": "thin film",
-    "Diffuse Roughness": "diffuse roughness",
-}
-
-
-def _weight(reader: ConstantReader, port: Port, name: str, absent: float = 0.0) -> float:
-    """Return a number input, or `absent` where this Blender's node does not have it."""
-    return reader.number(port.input(name)) if name in port.node.inputs else absent
-
-
-def _mix(reader: ConstantReader, port: Port) -> Surface:
-    factor = min(max(reader.number(port.input_at(0)), 0.0), 1.0)
-    first, second = fold(reader, port.input_at(1)), fold(reader, port.input_at(2))
-    return first.scaled(1.0 - factor) + second.scaled(factor)
-
-
-def _add(reader: ConstantReader, port: Port) -> Surface:
-    return fold(reader, port.input_at(0)) + fold(reader, port.input_at(1))
-
-
-def _nearest_diffuse(reader: ConstantReader, port: Port) -> Surface:
-    """Return what stands for a closure that the helper does not know: a diffuse surface of its colour."""
-    name = next((name for name in ("Color", "Base Color") if name in port.node.inputs), None)
-    reader.name(
-        port.node,
-        f"({port.node.bl_label}) is rendered as {'a diffuse surface of its colour' if name else 'black'}.",
-        "Use Principled, Diffuse or Emission.",
-    )
-    return Surface(diffuse=np.clip(reader.color(port.input(name)), 0.0, 1.0)) if name else Surface()
-
-
-def _name_normal(reader: ConstantReader, port: Port) -> None:
-    if "Normal" in port.node.inputs and reader.is_linked(port.input("Normal")):
-        reader.name(port.node, "has a normal or bump map, which is left out.")
-
-
-#: The one table of closures: how a node's shader output is folded.
-CLOSURES: dict[str, Callable[[ConstantReader, Port], Surface]] = {
-    "ShaderNodeBsdfDiffuse": _diffuse,
-    "ShaderNodeBsdfPrincipled": _principled,
-    "ShaderNodeEmission": _emission,
-    "ShaderNodeMixShader": _mix,
-    "ShaderNodeAddShader": _add,
-}

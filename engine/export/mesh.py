@@ -24,21 +24,14 @@ def read_mesh(mesh: bpy.types.Mesh, owner: str, messages: Messages, is_modelled:
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
-    # The attributes are read as they lie in memory; vertices[].co and loops[].vertex_index cost a call an element.
-    vertices = read(mesh.attributes["position"].data, "vector", (len(mesh.vertices), 3), np.float32)
-    corners = read(mesh.loop_triangles, "loops", (count, 3), np.int32)
-    corner_vertices = read(mesh.attributes[".corner_vert"].data, "value", (len(mesh.loops),), np.int32)
-    triangles = corner_vertices[corners]
+    vertices, corners, triangles = _topology(mesh, count)
     normals = _corner_normals(mesh, corners, triangles)
     slots = _slots(mesh, count)
 
     # Leave out what has no area or no place, so that one bad vertex does not spoil the rest
-    areas = read(mesh.loop_triangles, "area", (count,), np.float32)
-    keep = (areas > 0.0) & (areas < np.inf)
-    if not _all_placed(vertices):
-        astray = ~(np.abs(vertices) < MAX_COORDINATE).all(axis=1)
+    keep, astray = _usable(mesh, vertices, triangles)
+    if astray is not None:
         vertices[astray] = 0.0
-        keep &= ~astray[triangles].any(axis=1)
         normals = None  # the bad vertex is in the normals of its neighbours, too
         text = "has vertices that are nowhere or absurdly far away; their faces are left out and it is shaded flat."
         messages.add(owner, text, "Correct or remove these vertices.")
@@ -48,6 +41,38 @@ def read_mesh(mesh: bpy.types.Mesh, owner: str, messages: Messages, is_modelled:
             messages.add(owner, text, "Use Mesh > Clean Up > Degenerate Dissolve.")
         triangles, slots, normals = (None if a is None else a[keep] for a in (triangles, slots, normals))
     return Mesh(vertices, np.ascontiguousarray(triangles, np.uint32), slots, normals) if keep.any() else None
+
+
+def read_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return what the triangles that read_mesh() keeps are made of, in their order.
+
+    :return: (T, 3) int32 corners, (T,) int32 polygons.
+    """
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    vertices, corners, triangles = _topology(mesh, count)
+    polygons = read(mesh.loop_triangle_polygons, "value", (count,), np.int32)
+    keep, _ = _usable(mesh, vertices, triangles)
+    return corners[keep], polygons[keep]
+
+
+def _topology(mesh: bpy.types.Mesh, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (V, 3) positions, and the corners and the vertices of `count` triangles, (T, 3) each."""
+    # The attributes are read as they lie in memory; vertices[].co and loops[].vertex_index cost a call an element.
+    vertices = read(mesh.attributes["position"].data, "vector", (len(mesh.vertices), 3), np.float32)
+    corners = read(mesh.loop_triangles, "loops", (count, 3), np.int32)
+    corner_vertices = read(mesh.attributes[".corner_vert"].data, "value", (len(mesh.loops),), np.int32)
+    return vertices, corners, corner_vertices[corners]
+
+
+def _usable(mesh: bpy.types.Mesh, vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return which triangles have an area and a place, and which vertices have none, or None if all have."""
+    areas = read(mesh.loop_triangles, "area", (len(triangles),), np.float32)
+    keep = (areas > 0.0) & (areas < np.inf)
+    if _all_placed(vertices):
+        return keep, None
+    astray = ~(np.abs(vertices) < MAX_COORDINATE).all(axis=1)
+    return keep & ~astray[triangles].any(axis=1), astray
 
 
 def read(data: bpy.types.bpy_prop_collection, name: str, shape: Sequence[int], dtype: type) -> np.ndarray:

@@ -4,19 +4,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
 from mathutils import Matrix
-from photon_maps_native import MAX_COORDINATE, Instances, Light, Mesh, SceneData, World, emitter
+from photon_maps_native import MAX_COORDINATE, Instances, Light, Mesh, SceneData, World
 from photon_maps_native.shader import may_emit
 
 from ..messages import Messages
+from .attribute import MeshAttributes
 from .camera import read_camera
+from .dependencies import name_unmet
+from .holdout import held_out
 from .light import read_light
 from .material import MaterialTable
 from .mesh import read_mesh
+from .object_flags import is_holdout, name_unsupported, ray_visibility, shader_properties
+from .resources import Resources
 from .world import read_world
 
 #: Objects that have nothing to show, or show it through the mesh that the depsgraph lists beside them:
@@ -32,9 +37,6 @@ LEFT_OUT = {
     "GPENCIL": "a grease pencil",
     "GREASEPENCIL": "a grease pencil",
 }
-#: Ray visibility that diffuse surfaces would have to honour; the other flags speak of rays that are not there.
-VISIBILITY = {"visible_camera": "the camera", "visible_diffuse": "diffuse light", "visible_shadow": "shadow rays"}
-ROLES = {"is_holdout": "a holdout", "is_shadow_catcher": "a shadow catcher"}
 CLEAR_TRANSFORM = "Clear its location, rotation and scale."
 #: Instances between two looks at Esc.
 CANCEL_INTERVAL = 256
@@ -47,6 +49,7 @@ class _Rows:
     materials: MaterialTable
     messages: Messages
     override: bpy.types.Material | None  #: the view layer's material for everything
+    attributes: MeshAttributes
     meshes: list[Mesh] = field(default_factory=list)
     known: dict[int, tuple[int, int] | None] = field(default_factory=dict)  #: mesh and slots, by Blender's address
     names: list[str] = field(default_factory=list)  #: of the objects, one an instance
@@ -55,6 +58,9 @@ class _Rows:
     first_slots: list[int] = field(default_factory=list)
     slot_rows: dict[tuple[int, ...], int] = field(default_factory=dict)  #: first slot, by the materials of the slots
     slot_materials: list[int] = field(default_factory=list)
+    visibility: list[int] = field(default_factory=list)
+    properties: list[tuple[float, ...]] = field(default_factory=list)
+    holdouts: dict[int, int] = field(default_factory=dict)  #: materials of holdout objects, by what they are made of
     lights: list[Light] = field(default_factory=list)
     seen: set[str] = field(default_factory=set)  #: names of the objects whose flags have been looked at
 
@@ -72,25 +78,30 @@ def read_scene(
     :return: None if it was cancelled.
     """
     layer = depsgraph.view_layer_eval
-    rows = _Rows(MaterialTable(messages), messages, layer.material_override)
+    resources = Resources()
+    materials = MaterialTable(resources, messages)
+    rows = _Rows(materials, messages, layer.material_override, MeshAttributes(materials, messages))
     for number, instance in enumerate(depsgraph.object_instances):
         if number % CANCEL_INTERVAL == CANCEL_INTERVAL - 1 and is_cancelled():
             return None
         # The object and its pointers are only good until the next instance: copy now.
         if instance.show_self:
-            _add_object(rows, instance.object, instance.matrix_world)
+            _add_instance(rows, instance, layer)
         if instance.show_particles and not instance.is_instance:
             _name_hair(instance.object, messages)
-    radiance = read_world(layer_world(depsgraph), messages)
-    rows.materials.materials.append(emitter(radiance))
+    surroundings, visibility = read_world(layer_world(depsgraph), resources, messages)
     data = SceneData(
         meshes=rows.meshes,
         instances=_instances(rows),
         materials=rows.materials.materials,
-        lights=rows.lights,
+        lights=rows.lights + [replace(sun, visibility=visibility) for sun in resources.suns.values()],
         camera=read_camera(camera, depsgraph, messages),
-        world=World(len(rows.materials.materials) - 1),
+        world=World(rows.materials.add(surroundings), visibility),
+        images=resources.images,
+        textures=resources.textures,
+        tables=resources.tables,
     )
+    name_unmet(depsgraph, messages)
     _name_scene_settings(depsgraph, messages)
     _name_darkness(depsgraph.scene.name, data, messages)
     return data
@@ -102,34 +113,41 @@ def layer_world(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
     return override or depsgraph.scene_eval.world
 
 
-def _add_object(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+def _add_instance(rows: _Rows, instance: bpy.types.DepsgraphObjectInstance, layer: bpy.types.ViewLayer) -> None:
+    object = instance.object
     if object.type in WITHOUT_TRIANGLES:
         return
     if object.type in LEFT_OUT:
         rows.messages.add(object.name, f"is {LEFT_OUT[object.type]}, which is not supported; it is left out.")
         return
+    visibility = ray_visibility(instance, layer)
     if object.type == "LIGHT":
-        _add_light(rows, object, matrix)
+        _add_light(rows, object, instance.matrix_world, visibility)
     elif object.type == "MESH":
-        _add_mesh(rows, object, matrix)
+        _add_mesh(rows, instance, visibility, is_holdout(instance, layer))
     else:
         rows.messages.add(object.name, f"is of the type {object.type}, which is not supported; it is left out.")
         return
-    _name_flags(rows, object)
+    if object.name not in rows.seen:
+        rows.seen.add(object.name)
+        name_unsupported(object, rows.messages)
 
 
-def _add_light(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+def _add_light(rows: _Rows, object: bpy.types.Object, matrix: Matrix, visibility: int) -> None:
     place = np.array(matrix)
     # NaN makes the comparison false.
     if not (np.abs(place) < MAX_COORDINATE).all() or np.linalg.det(place[:3, :3]) == 0.0:
         rows.messages.add(object.name, "is a lamp without a usable place or scale; it is left out.", CLEAR_TRANSFORM)
         return
-    light = read_light(object, matrix, rows.messages)
+    light = read_light(object, matrix, visibility, rows.messages)
     if light is not None:
         rows.lights.append(light)
 
 
-def _add_mesh(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
+def _add_mesh(rows: _Rows, instance: bpy.types.DepsgraphObjectInstance, visibility: int, holdout: bool) -> None:
+    if not visibility:
+        return
+    object = instance.object
     key = object.data.as_pointer()  # objects that share their mesh, or its evaluated form, share the triangles
     if key not in rows.known:
         rows.known[key] = _read_new_mesh(rows, object)
@@ -139,8 +157,13 @@ def _add_mesh(rows: _Rows, object: bpy.types.Object, matrix: Matrix) -> None:
     index, slot_count = known
     rows.names.append(object.name)
     rows.instance_meshes.append(index)
-    rows.transforms.append(matrix.copy())
-    rows.first_slots.append(_first_slot(rows, object, slot_count))
+    rows.transforms.append(instance.matrix_world.copy())
+    first_slot = _first_slot(rows, object, slot_count, holdout)
+    rows.first_slots.append(first_slot)
+    rows.visibility.append(visibility)
+    rows.properties.append(shader_properties(instance))
+    materials = tuple(rows.slot_materials[first_slot : first_slot + slot_count])
+    rows.attributes.complete(index, rows.meshes[index], materials, object)
 
 
 def _read_new_mesh(rows: _Rows, object: bpy.types.Object) -> tuple[int, int] | None:
@@ -154,17 +177,28 @@ def _read_new_mesh(rows: _Rows, object: bpy.types.Object) -> tuple[int, int] | N
     return len(rows.meshes) - 1, 1 if mesh.slots is None else int(mesh.slots.max()) + 1
 
 
-def _first_slot(rows: _Rows, object: bpy.types.Object, slot_count: int) -> int:
+def _first_slot(rows: _Rows, object: bpy.types.Object, slot_count: int, holdout: bool) -> int:
     """Return where the materials of an object's slots begin, adding them the first time."""
     # The evaluated slots hold an object's own materials as well as those that Geometry Nodes set.
     slots = [rows.materials.index(rows.override or slot.material) for slot in object.material_slots]
     slots = slots or [rows.materials.index(rows.override)]
     slots += [slots[-1]] * (slot_count - len(slots))  # faces beyond the last slot have the last one's material
+    if holdout:
+        slots = [_holdout(rows, index) for index in slots]
     row = tuple(slots)
     if row not in rows.slot_rows:
         rows.slot_rows[row] = len(rows.slot_materials)
         rows.slot_materials += row
     return rows.slot_rows[row]
+
+
+def _holdout(rows: _Rows, index: int) -> int:
+    """Return the number of a material's holdout, making it the first time."""
+    materials = rows.materials.materials
+    if index not in rows.holdouts:
+        rows.holdouts[index] = len(materials)
+        materials.append(held_out(materials[index]))
+    return rows.holdouts[index]
 
 
 def _instances(rows: _Rows) -> Instances:
@@ -178,6 +212,8 @@ def _instances(rows: _Rows) -> Instances:
         transforms=matrices[keep].astype(np.float32),
         first_slots=np.array(rows.first_slots, dtype=np.uint32)[keep],
         slot_materials=np.array(rows.slot_materials, dtype=np.uint32),
+        visibility=np.array(rows.visibility, dtype=np.uint32)[keep],
+        properties=np.array(rows.properties, dtype=np.float32).reshape(-1, 6)[keep],
     )
 
 
@@ -188,23 +224,6 @@ def _reaches(meshes: Sequence[Mesh], used: np.ndarray, matrices: np.ndarray) -> 
     middle = np.einsum("nij,nj->ni", matrices[:, :, :3], center) + matrices[:, :, 3]
     extent = np.einsum("nij,nj->ni", np.abs(matrices[:, :, :3]), half)
     return np.maximum((np.abs(middle) + extent).max(axis=1), np.abs(matrices).max(axis=(1, 2)))
-
-
-def _name_flags(rows: _Rows, object: bpy.types.Object) -> None:
-    """Name, once for each object, the flags that cannot be honoured."""
-    if object.name in rows.seen:
-        return
-    rows.seen.add(object.name)
-    is_lamp = object.type == "LIGHT"
-    for flag, whom in VISIBILITY.items():
-        if not getattr(object, flag) and not (is_lamp and flag != "visible_diffuse"):
-            rows.messages.add(object.name, f"is to be invisible to {whom}, which is not supported; it is visible.")
-    for flag, what in ROLES.items():
-        if getattr(object, flag) and not is_lamp:
-            rows.messages.add(object.name, f"is {what}, which is not supported; it is rendered as it is.")
-    linking = object.light_linking
-    if linking and (linking.receiver_collection or linking.blocker_collection):
-        rows.messages.add(object.name, "has light linking, which is not supported; it lights everything.")
 
 
 def _name_hair(object: bpy.types.Object, messages: Messages) -> None:
@@ -220,15 +239,6 @@ def _name_scene_settings(depsgraph: bpy.types.Depsgraph, messages: Messages) -> 
         messages.add(name, "has motion blur, which is not supported; the picture is sharp.")
     if render.use_multiview:
         messages.add(name, "has stereoscopy, which is not supported; every view shows the camera's.")
-    pending = list(depsgraph.view_layer_eval.layer_collection.children)
-    while pending:
-        collection = pending.pop()
-        pending += collection.children
-        if not collection.exclude and (collection.holdout or collection.indirect_only):
-            messages.add(
-                collection.name,
-                "is a collection with Holdout or Indirect Only, which is not supported; it is rendered as it is.",
-            )
 
 
 def _name_darkness(name: str, data: SceneData, messages: Messages) -> None:

@@ -1,40 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The world: one radiance from everywhere outside the scene."""
+"""The world: what arrives from everywhere outside the scene, by direction."""
 
 from __future__ import annotations
 
 import bpy
-from photon_maps_native.scene_data import MAX_RADIANCE, Color
+import numpy as np
+from photon_maps_native import MAX_RADIANCE, Material, Ray, emitter
 
 from ..messages import Messages
-from .material import TARGET, checked
-from .nodes import ConstantReader, Port, shader_tree, source
+from .material import BLACK, TARGET, checked, compile_output
+from .nodes import shader_tree
+from .resources import Resources
 
-BLACK = (0.0, 0.0, 0.0)
+#: Cycles' ray visibility of a world, and the rays it speaks of.
+VISIBILITY = {"camera": Ray.CAMERA, "diffuse": Ray.DIFFUSE, "glossy": Ray.GLOSSY, "transmission": Ray.TRANSMISSION}
 
 
-def read_world(world: bpy.types.World | None, messages: Messages) -> Color:
-    """Return the world's radiance; what is not constant is named in the messages."""
+def read_world(world: bpy.types.World | None, resources: Resources, messages: Messages) -> tuple[Material, Ray]:
+    """Compile a world; what of it is not rendered as Cycles does is named in the messages.
+
+    :return: the material whose emission it is, and the rays that see it.
+    """
     if world is None:
-        return BLACK
+        return emitter(BLACK), Ray.ALL
     tree = shader_tree(world)
     if tree is None:
-        return tuple(world.color)
+        color = checked(np.array(world.color), MAX_RADIANCE, world.name, "colour", messages)
+        return emitter(color), _visibility(world)
     output = tree.get_output_node(TARGET)
     if output is None:
-        return BLACK
-    reader = ConstantReader(world.name, messages)
-    if reader.is_linked(Port(output.inputs["Volume"])):
-        messages.add(world.name, "has a volume, which is left out.")
-    port = source(Port(output.inputs["Surface"]))
-    if not port.socket.is_output:
-        return BLACK
-    if port.node.bl_idname != "ShaderNodeBackground":
-        reader.name(
-            port.node,
-            f"({port.node.bl_label}) is not supported in a world; it is rendered black.",
-            "Use one Background node.",
-        )
-        return BLACK
-    radiance = reader.color(port.input("Color")) * reader.number(port.input("Strength"))
-    return checked(radiance, MAX_RADIANCE, world.name, "radiance", messages)
+        return emitter(BLACK), Ray.ALL
+    return compile_output(output, world.name, resources, messages, is_world=True), _visibility(world)
+
+
+def _visibility(world: bpy.types.World) -> Ray:
+    settings = getattr(world, "cycles_visibility", None)  # absent where the Cycles add-on is disabled
+    visibility = Ray.ALL
+    for name, rays in VISIBILITY.items():
+        if settings is not None and not getattr(settings, name):
+            visibility &= ~rays
+    return visibility

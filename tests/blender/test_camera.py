@@ -143,9 +143,27 @@ def test_a_border_holds_the_same_pixels(marked, crop):
     np.testing.assert_array_equal(part, whole[bottom:top, left:right])
 
 
-def test_a_panorama_is_named_and_rendered(marked):
-    marked.camera.data.type = "PANO"
+def test_an_unknown_kind_of_camera_is_named(marked):
+    if "CUSTOM" not in bpy.types.Camera.bl_rna.properties["type"].enum_items:
+        pytest.skip("this Blender has no custom cameras")
+    marked.camera.data.type = "CUSTOM"
     assert any(line.startswith("Camera") and "perspective" in line for line in messages(marked))
+    assert render(marked)["Combined"][..., :3].any(axis=(0, 1)).all()
+
+
+def test_a_camera_that_sees_nothing_is_named(marked):
+    marked.camera.data.clip_start, marked.camera.data.clip_end = 3.0, 2.0
+    assert any(line.startswith("Camera") and "Clip End" in line for line in messages(marked))
+
+
+def test_clip_distances_are_depths(marked):
+    """All three markers are farther from the camera than their depths."""
+    camera = marked.camera.data
+    camera.clip_start, camera.clip_end = 4.02, 4.98
+    picture = render(marked)["Combined"]
+    assert picture[..., 2].any() and not picture[..., :2].any()
+    camera.clip_start, camera.clip_end = 3.98, 5.02
+    assert all(channel.any() for channel in np.moveaxis(render(marked)["Combined"], 2, 0))
 
 
 def test_the_film_is_transparent_where_nothing_is(marked):

@@ -9,7 +9,7 @@ import pytest
 from mathutils import Matrix
 
 from tests.blender.scenes import lamp, link, material, mean, render, render_with_cycles
-from tests.reference_scenes import REFERENCE_SCENES, ReferenceScene, bias
+from tests.reference_scenes import DIFFUSE_SCENES, ReferenceScene, bias
 
 RESOLUTION = 64
 
@@ -48,9 +48,9 @@ def build(scene: bpy.types.Scene, reference: ReferenceScene) -> None:
     scene.render.resolution_x = scene.render.resolution_y = RESOLUTION
 
 
-@pytest.mark.parametrize("name", REFERENCE_SCENES)
+@pytest.mark.parametrize("name", DIFFUSE_SCENES)
 def test_photon_maps_path_tracing_and_cycles_agree(scene, name: str) -> None:
-    build(scene, REFERENCE_SCENES[name])
+    build(scene, DIFFUSE_SCENES[name])
     settings = scene.photon_maps
     settings.passes = 64
     pictures = {"cycles": render_with_cycles(scene, samples=256, bounces=64)["Combined"]}
@@ -63,6 +63,6 @@ def test_photon_maps_path_tracing_and_cycles_agree(scene, name: str) -> None:
 
     # The reference has four times the resolution; Blender's rows count from the top in the file, from below in ours.
     block = 256 // RESOLUTION
-    reference = REFERENCE_SCENES[name].reference()[0].reshape(RESOLUTION, block, RESOLUTION, block, 3).mean((1, 3))
+    reference = DIFFUSE_SCENES[name].reference()[0].reshape(RESOLUTION, block, RESOLUTION, block, 3).mean((1, 3))
     for renderer, picture in pictures.items():
         assert abs(bias(picture[..., :3].astype(float), reference)) < 0.01, renderer

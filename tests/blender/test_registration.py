@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib.util
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -50,6 +51,8 @@ def test_blenders_own_panels_are_shown(extension):
         "DATA_PT_lens",
         "EEVEE_MATERIAL_PT_context_material",
         "DATA_PT_EEVEE_light",
+        "DATA_PT_camera_dof",
+        "DATA_PT_camera_dof_aperture",
     } <= compatible
     assert not any(name.startswith("CYCLES") for name in compatible)
 
@@ -126,11 +129,11 @@ class Layout:
         self.texts.append("nodes")
 
 
-def drawn(extension, name):
-    """Draw a panel in the context of the open scene."""
+def drawn(extension, name, context=None):
+    """Draw a panel in the context of the open scene, or in a given one."""
     panel = type("Panel", (getattr(extension.ui.panels, name),), {"layout": None})
     panel = object.__new__(type("Drawn", (), {"layout": Layout(), "column": panel.column, "draw": panel.draw}))
-    panel.draw(bpy.context)
+    panel.draw(context or bpy.context)
     return panel.layout
 
 
@@ -148,3 +151,18 @@ def test_panels_show_what_there_is(scene, extension):
     shown = drawn(extension, "PHOTON_MAPS_PT_passes").properties
     assert len(shown) == len(set(shown)) and {"use_pass_z", "use_pass_direct", "use_pass_denoising"} <= set(shown)
     assert "radius" in drawn(extension, "PHOTON_MAPS_PT_photons").properties
+
+
+def test_panels_of_cameras_objects_and_worlds(scene, extension):
+    from bl_ext.user_default.photon_maps.engine.export.panorama import panorama_settings
+
+    camera = bpy.data.cameras.new("Camera")
+    panorama_settings(camera).panorama_type = "EQUIRECTANGULAR"
+    place = SimpleNamespace(
+        camera=camera, object=bpy.data.objects.new("Camera", camera), world=bpy.data.worlds.new("World")
+    )
+    assert {"panorama_type", "longitude_max"} <= set(drawn(extension, "PHOTON_MAPS_PT_panorama", place).properties)
+    rays = ["camera", "diffuse", "glossy", "transmission"]
+    shown = drawn(extension, "PHOTON_MAPS_PT_ray_visibility", place).properties
+    assert shown == [f"visible_{ray}" for ray in (*rays, "shadow")]
+    assert drawn(extension, "PHOTON_MAPS_PT_world_visibility", place).properties == rays

@@ -239,13 +239,13 @@ typedef struct pm_camera {
     uint32_t type;          /* pm_camera_type */
     float transform[12];    /* camera to world, rigid; the camera looks along its local -z, y up */
     float window[4];        /* left, right, bottom, top of the whole frame on the plane z = -1
-                               (perspective) or in scene units (orthographic) */
+                               (perspective), in scene units (orthographic) or in radians */
     uint32_t resolution[2]; /* of the whole frame */
     uint32_t region[4];     /* x, y, width, height of what is rendered; y counts from the bottom */
     float clip_start;       /* along the view direction; equirectangular: distance */
     float clip_end;
     float aperture_radius;    /* of the lens, in scene units; 0: all is in focus */
-    float focus_distance;     /* along the view direction (equirectangular: no lens) */
+    float focus_distance;     /* along the view direction; equirectangular: distance */
     float aperture_rotation;  /* radians */
     float aperture_ratio;     /* above 0: of width to height is 1 / ratio, as Blender's anamorphic bokeh */
     uint32_t aperture_blades; /* fewer than 3: round */
@@ -329,8 +329,9 @@ PM_API pm_status pm_scene_add_table(pm_scene *scene, const pm_table *table, uint
 /* Sets the materials, after the textures and tables that they name and before the instances. */
 PM_API pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *materials, uint64_t count);
 PM_API pm_status pm_scene_set_lights(pm_scene *scene, const pm_light *lights, uint64_t count);
-/* Sets the material whose emission arrives from everywhere outside the scene, by direction (PM_INPUT_POSITION and the
- * other geometric inputs are the direction), and what it is visible to (bits 1 << pm_ray). Without a call: black. */
+/* Sets the material whose emission arrives from everywhere outside the scene, by direction (positions are the
+ * direction, PM_INPUT_INCOMING and normals its opposite), and what it is visible to (bits 1 << pm_ray). Without a call:
+ * black. */
 PM_API pm_status pm_scene_set_world(pm_scene *scene, uint32_t material, uint32_t visibility);
 /* Releases a scene after all of its renders; null is ignored. */
 PM_API void pm_scene_release(pm_scene *scene);

@@ -18,14 +18,22 @@ from .scene_data import Attribute, Camera, Domain, Image, Instances, Light, Mate
 PIXEL_TYPES = {np.dtype(np.uint8): 0, np.dtype(np.float16): 1, np.dtype(np.float32): 2}
 
 
+class Address(ctypes.c_void_p):
+    """Where an array is, and the array: a cast keeps what it was made from, and a structure what it is given."""
+
+    def __init__(self, array: np.ndarray) -> None:
+        super().__init__(array.ctypes.data)
+        self.array = array
+
+
 def floats(array: np.ndarray) -> Any:
-    """Return a pointer to a contiguous float32 array, which must outlive the call."""
-    return array.ctypes.data_as(structs.FloatPointer)
+    """Return a pointer to a contiguous float32 array, which it keeps alive."""
+    return ctypes.cast(Address(array), structs.FloatPointer)
 
 
 def uints(array: np.ndarray) -> Any:
-    """Return a pointer to a contiguous uint32 array, which must outlive the call."""
-    return array.ctypes.data_as(structs.UintPointer)
+    """Return a pointer to a contiguous uint32 array, which it keeps alive."""
+    return ctypes.cast(Address(array), structs.UintPointer)
 
 
 def shaped(array: np.ndarray, dtype: type, shape: tuple[int | None, ...], name: str) -> np.ndarray:
@@ -132,7 +140,7 @@ def to_image(image: Image) -> structs.PmImage:
         width=width,
         height=height,
         channels=channels,
-        pixels=pixels.ctypes.data_as(ctypes.c_void_p),
+        pixels=Address(pixels),
         decode=decode,
     )
 

@@ -188,7 +188,8 @@ class Camera:
 
     type: CameraType
     transform: np.ndarray  #: (3, 4) float32, camera to world, rigid; looks along local -z
-    window: tuple[float, float, float, float]  #: left, right, bottom, top of the frame at z = -1, or in scene units
+    #: Left, right, bottom, top of the frame: at z = -1, ORTHOGRAPHIC in scene units, EQUIRECTANGULAR in radians.
+    window: tuple[float, float, float, float]
     resolution: tuple[int, int]  #: of the whole frame
     region: tuple[int, int, int, int]  #: x, y, width, height of what is rendered
     clip_start: float = 0.0

@@ -21,12 +21,14 @@ struct SceneState {
     pm::Scene scene;
     std::vector<pm::Lamp> lamps;
     pm::World world;
-    std::unique_ptr<pm::Lights> lights;  // once frozen
+    std::unique_ptr<pm::Lights> lights;  // once frozen, as is the next
+    std::unique_ptr<pm::Emission> emission;
 
     void freeze() {
         if (lights) return;
         scene.freeze();
         lights = std::make_unique<pm::Lights>(scene, lamps, world);
+        emission = std::make_unique<pm::Emission>(scene, *lights);
     }
 };
 
@@ -95,7 +97,7 @@ struct pm_scene {
 
 struct pm_render {
     pm_render(std::shared_ptr<SceneState> scene, const pm::Camera &camera, const pm::RenderSettings &settings)
-        : state(std::move(scene)), render(state->scene, *state->lights, camera, settings) {}
+        : state(std::move(scene)), render(state->scene, *state->lights, *state->emission, camera, settings) {}
 
     std::shared_ptr<SceneState> state;
     pm::Render render;
@@ -260,6 +262,7 @@ pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_se
         require_handle(render, "render");
         pm::validate(*camera);
         pm::validate(*settings);
+        if (!scene->state->lights) scene->state->scene.view = pm::to_view(*camera);  // shaders see the first one's
         scene->state->freeze();
         *render =
             std::make_unique<pm_render>(scene->state, pm::to_camera(*camera), pm::to_settings(*settings)).release();
@@ -319,7 +322,7 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->caustic_photons = s.caustic_photons;
         statistics->caustic_radius_first = s.caustic_radius_first;
         statistics->caustic_radius_last = s.caustic_radius_last;
-        statistics->caster_count = s.caster_count;
+        statistics->caster_count = render->state->emission->caster_count();
         statistics->reserved = 0;
         statistics->seconds_trace = s.seconds_trace;
         statistics->seconds_build = s.seconds_build;
@@ -364,7 +367,7 @@ pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t 
             pm::require(pm::is_finite(point) && pm::max_component(pm::abs(point)) <= pm::max_coordinate,
                         "point " + std::to_string(i) + " is not finite or beyond 1e9");
             pm::require(std::abs(pm::length(normal) - 1) < 1e-3f, "normal " + std::to_string(i) + " is no unit vector");
-            const pm::Vec3 e = render->render.irradiance(map, point, normal);
+            const pm::Vec3 e = render->render.irradiance(map, static_cast<pm_photon_kind>(kind), point, normal);
             irradiance[3 * i] = e.x;
             irradiance[3 * i + 1] = e.y;
             irradiance[3 * i + 2] = e.z;

@@ -37,12 +37,17 @@ struct Camera {
     float left, right, bottom, top;  ///< window of the whole frame at z = -1, in scene units, or in radians
     uint32_t frame_width, frame_height;
     uint32_t x, y, width, height;  ///< region; y counts from the bottom
-    float clip_start, clip_end;    ///< along the view direction
+    float clip_start, clip_end;    ///< depths: along the view direction, of a panorama distances
     float aperture_radius = 0, focus_distance = 1, aperture_rotation = 0, aperture_ratio = 1;
     uint32_t aperture_blades = 0;
 
-    /// The ray through a point of the frame in pixels; a length of its direction is one unit of depth.
-    Ray ray(Vec2 pixel) const;
+    /// The ray through a point of the frame and a point of the lens; a length of its direction is one unit of depth.
+    /// @param pixel a point of the frame in pixels
+    /// @param lens two numbers in [0, 1), uniform over the aperture; without one they do not count
+    Ray ray(Vec2 pixel, Vec2 lens) const;
+
+    /// The side of a square as large as what one pixel sees, square to the view, at a depth in scene units.
+    float footprint(float depth) const;
 };
 
 }  // namespace photon_maps

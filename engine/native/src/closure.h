@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "fixed_vector.h"
 #include "vec.h"
 
 namespace photon_maps {
@@ -32,12 +33,21 @@ enum class Transport { radiance, flux };
 
 enum class ClosureType : uint8_t { diffuse, translucent, sheen, reflection, refraction, glass };
 
-/// One closure with the colour and weight it has at a point.
+/// How a smooth boundary reflects: fresnel.h has the formulas.
+enum class Fresnel : uint8_t { none, dielectric, f82, conductor };
+
+/// One closure with the colour and weight it has at a point: surface.h makes them.
 struct Closure {
     ClosureType type;
     Vec3 weight;          ///< multiplies all that it scatters
     Vec3 normal;          ///< unit, on the side that is seen
     float roughness = 0;  ///< as the user gives it, 0 to 1
+    Fresnel fresnel = Fresnel::none;
+    float eta = 1;       ///< index of refraction on the far side over that on the side that is seen
+    Vec3 f0{};           ///< reflectance head on; conductor: index; diffuse: factor of what is scattered several times
+    Vec3 tint{};         ///< of what is transmitted; F82: the term's factor; conductor: extinction
+    Vec3 reflected{};    ///< about which share of the light from `outgoing` is reflected
+    Vec3 transmitted{};  ///< likewise
 };
 
 /// Largest ratio of the cosines to two normals that a photon may be weighted by.
@@ -58,14 +68,14 @@ constexpr size_t max_closures = 12;
 struct Shading {
     Vec3 outgoing;               ///< towards where the ray came from
     Vec3 normal;                 ///< geometric, on that side
+    Vec3 smooth_normal;          ///< interpolated, without bumps, on that side; 0 where closures have no other
     bool is_backfacing = false;  ///< that side is the back
     Vec3 emission;               ///< radiance towards `outgoing`
     Vec3 transparency;           ///< share of light that passes straight through, unscattered
     float holdout = 0;           ///< share of the point that is a hole in the picture
-    uint32_t closure_count = 0;  ///< further closures are dropped
-    std::array<Closure, max_closures> closures;
+    FixedVector<Closure, max_closures> closures;  ///< further ones are dropped
 
-    std::span<const Closure> scattering() const { return {closures.data(), closure_count}; }
+    std::span<const Closure> scattering() const { return closures.values(); }
 };
 
 /// A direction drawn by the closures.

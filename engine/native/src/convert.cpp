@@ -90,6 +90,21 @@ Camera to_camera(const pm_camera &source) {
     return camera;
 }
 
+View to_view(const pm_camera &source) {
+    const Transform t = rigid(Transform::from_rows(source.transform));
+    View view;
+    view.world_to_camera = {{t.x.x, t.y.x, t.z.x},
+                            {t.x.y, t.y.y, t.z.y},
+                            {t.x.z, t.y.z, t.z.z},
+                            {-dot(t.x, t.origin), -dot(t.y, t.origin), -dot(t.z, t.origin)}};
+    view.type = static_cast<pm_camera_type>(source.type);
+    view.left = source.window[0];
+    view.right = source.window[1];
+    view.bottom = source.window[2];
+    view.top = source.window[3];
+    return view;
+}
+
 RenderSettings to_settings(const pm_settings &source) {
     RenderSettings settings;
     settings.integrator = static_cast<Integrator>(source.integrator);

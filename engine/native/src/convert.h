@@ -23,6 +23,7 @@ Texture to_texture(const pm_texture &source);
 Table to_table(const pm_table &source);
 Lamp to_lamp(const pm_light &source);
 Camera to_camera(const pm_camera &source);
+View to_view(const pm_camera &source);
 RenderSettings to_settings(const pm_settings &source);
 
 }  // namespace photon_maps

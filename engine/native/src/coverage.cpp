@@ -125,6 +125,7 @@ float Coverage::measured_share(Vec3 center, Vec3 normal, float radius) const {
         const Vec3 above = center + (frame.x * p.x + frame.y * p.y + normal * probe_height) * radius;
         SurfacePoint hit;
         if (!scene_.intersect({above, -normal, 0, 2 * probe_height * radius}, hit)) continue;
+        if (!(hit.material->traits.lobes & diffuse_lobes)) continue;  // photons are not recorded there
         const float height = dot(hit.position - center, normal) / radius, cosine = dot(hit.normal, normal);
         const float distance_squared = squared + height * height;
         if (!(std::abs(height) < plane_tolerance && cosine > normal_tolerance && distance_squared < 1)) continue;

@@ -45,6 +45,7 @@ rtc::Functions resolve_functions(void *library) {
     resolve(library, "rtcAttachGeometryByID", f.rtcAttachGeometryByID);
     resolve(library, "rtcSetSharedGeometryBuffer", f.rtcSetSharedGeometryBuffer);
     resolve(library, "rtcSetGeometryInstancedScene", f.rtcSetGeometryInstancedScene);
+    resolve(library, "rtcSetGeometryMask", f.rtcSetGeometryMask);
     resolve(library, "rtcSetGeometryTransform", f.rtcSetGeometryTransform);
     resolve(library, "rtcIntersect1", f.rtcIntersect1);
     resolve(library, "rtcOccluded1", f.rtcOccluded1);

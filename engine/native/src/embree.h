@@ -68,6 +68,7 @@ struct Functions {
     void (*rtcSetSharedGeometryBuffer)(Geometry, BufferType, uint32_t slot, Format, const void *, size_t offset,
                                        size_t stride, size_t count);
     void (*rtcSetGeometryInstancedScene)(Geometry, Scene);
+    void (*rtcSetGeometryMask)(Geometry, uint32_t mask);
     void (*rtcSetGeometryTransform)(Geometry, uint32_t step, Format, const void *);
     void (*rtcIntersect1)(Scene, RayHit *, void *arguments);
     void (*rtcOccluded1)(Scene, Ray *, void *arguments);

@@ -47,7 +47,19 @@ struct Vec3x8 {
 struct Sum {
     Vec3 flux;  ///< W, weighted
     uint32_t photons;
+    float weight;  ///< of the photons, by the kernel alone
 };
+
+/// By what the closures of a query multiply the flux of a photon: the scattered share of its light, which came by the
+/// geometric cosine.
+Vec3 scattered_share(const Query &query, uint32_t packed_direction) {
+    const Vec3 incoming = -unpack_direction(packed_direction);
+    constexpr float least_cosine = 1e-6f;
+    const float cosine = std::max(dot(incoming, query.normal), least_cosine);
+    const Vec3 scattered = evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance);
+    // Bounded as shading_ratio is, for closures of any colour: scattered / cosine is below weight / pi otherwise.
+    return min(scattered / cosine, albedo(*query.shading, diffuse_reflection) * (max_shading_ratio / pi));
+}
 
 /// What a query sums over the photons around it; called with runs of photons.
 class Gather {
@@ -59,7 +71,7 @@ class Gather {
           barriers_(barriers),
           frame_(query.normal),
           inverse_radius_(1 / kernel.radius),
-          is_smooth_(!(query.shading_normal == query.normal)) {}
+          is_smooth_(!query.shading && !(query.shading_normal == query.normal)) {}
 
     [[gnu::always_inline]] void operator()(size_t begin, size_t end) {
         for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
@@ -68,7 +80,7 @@ class Gather {
     Sum sum() const {
         int32_t count = 0;
         for (size_t lane = 0; lane < lanes; ++lane) count -= count_[lane];
-        return {{total(red_), total(green_), total(blue_)}, static_cast<uint32_t>(count)};
+        return {{total(red_), total(green_), total(blue_)}, static_cast<uint32_t>(count), total(weight_)};
     }
 
   private:
@@ -92,10 +104,26 @@ class Gather {
         if (is_smooth_) weight *= shading_weights(load(&photons_.direction[i]), query_);
         if (query_.is_bent) mask &= dot(unpack_directions(load(&photons_.direction[i])), n) < 0;
         weight = select(mask, weight);
+        weight_ += weight;
+        count_ += mask;
+        if (query_.shading) {
+            add_scattered(i, mask, weight);
+            return;
+        }
         red_ += weight * load(&photons_.red[i]);
         green_ += weight * load(&photons_.green[i]);
         blue_ += weight * load(&photons_.blue[i]);
-        count_ += mask;
+    }
+
+    /// One photon at a time, through the closures.
+    void add_scattered(size_t i, Int8 mask, Float8 weight) {
+        for (size_t lane = 0; lane < lanes; ++lane) {
+            if (!mask[lane]) continue;
+            const Vec3 share = scattered_share(query_, photons_.direction[i + lane]) * weight[lane];
+            red_[lane] += share.x * photons_.red[i + lane];
+            green_[lane] += share.y * photons_.green[i + lane];
+            blue_[lane] += share.z * photons_.blue[i + lane];
+        }
     }
 
     const PhotonArrays &photons_;
@@ -105,13 +133,13 @@ class Gather {
     Frame frame_;
     float inverse_radius_;
     bool is_smooth_;
-    Float8 red_{}, green_{}, blue_{};
+    Float8 red_{}, green_{}, blue_{}, weight_{};
     Int8 count_{};  ///< less the photons that counted
 };
 
 }  // namespace
 
-Estimate estimate_irradiance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &asked) {
+Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &asked) {
     // Among very many edges, such as those of leaves, a smaller disc meets few enough.
     constexpr int most_halvings = 16;
     Kernel kernel = asked;
@@ -125,7 +153,8 @@ Estimate estimate_irradiance(const PhotonMap &map, const EdgeIndex &edges, const
         map.visit_range(query.position, kernel.radius, gather);
         return gather.sum();
     });
-    return {sum.flux / (kernel.norm() * region.share()), sum.photons};
+    const float area = kernel.norm() * region.share();
+    return {sum.flux / area, sum.photons, sum.weight / area};
 }
 
 float radius_holding(const PhotonMap &map, const Query &query, size_t k, float max_radius) {

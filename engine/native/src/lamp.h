@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One lamp: radiance, direct sampling and photon emission of each of Blender's types.
+// One lamp: radiance and direct sampling of each of Blender's types.
 #pragma once
 
 #include "light.h"
@@ -16,19 +16,30 @@ struct SceneSphere {
 /// @return nothing where the lamp does not shine on the position
 std::optional<LightSample> sample_lamp(const Lamp &lamp, Vec3 position, float u, float v);
 
-/// Emits a photon; its flux is that of the whole lamp.
-PhotonEmission emit_from_lamp(const Lamp &lamp, const SceneSphere &sphere, const std::array<float, 4> &u);
-
 /// Power that emission shares photons by, mean of RGB, W.
 float emitted_power(const Lamp &lamp, const SceneSphere &sphere);
 
 /// The irradiance that the lamp might bring to a surface at `position`, W/m2: never zero where it shines.
 float possible_irradiance(const Lamp &lamp, Vec3 position);
 
-/// Where a ray meets the lamp, and the radiance towards its origin.
-std::optional<std::pair<Vec3, float>> intersect_lamp(const Lamp &lamp, const Ray &ray);
+/// The lamp, if it has an extent, that lies in a unit direction from a point: its source is left to the caller.
+std::optional<LampHit> meet_lamp(const Lamp &lamp, Vec3 origin, Vec3 direction);
 
-/// A parallel beam of photons towards the scene: origin on the disk across the sphere.
-Ray ray_across(const SceneSphere &sphere, Vec3 direction, float u, float v);
+bool is_area(const Lamp &lamp);
+/// Of an area lamp.
+float area(const Lamp &lamp);
+/// Radiance of an area lamp at an angle to its normal whose tangent is given.
+Vec3 area_radiance(const Lamp &lamp, float tangent);
+/// Radiant intensity of a point or spot lamp on its axis, W/sr.
+Vec3 intensity(const Lamp &lamp);
+/// 1 - cos of the cone about -z that holds all directions of a point or spot lamp.
+float emission_cone(const Lamp &lamp);
+/// Share of a point or spot lamp's intensity in a unit direction of travel.
+float attenuation(const Lamp &lamp, Vec3 direction);
+/// 1 - cos of half the sun's angle, and the radiance of its disk.
+float sun_cone(const Lamp &lamp);
+Vec3 sun_radiance(const Lamp &lamp);
+/// Tangent of the angle between unit vectors, exact for small angles too.
+float tangent_between(Vec3 a, Vec3 b);
 
 }  // namespace photon_maps

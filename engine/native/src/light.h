@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that shines: lamps, emissive triangles and the world; sampled from a point, and emitting photons.
+// Everything that shines: lamps, emissive triangles and the world; sampled from a point.
 // Units follow Blender: see each member of Lamp.
 #pragma once
 
@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "emissive_triangles.h"
+#include "light_sample.h"
 #include "scene.h"
-#include "sequence.h"
+#include "world_light.h"
 
 namespace photon_maps {
 
@@ -27,41 +29,25 @@ struct Lamp {
     uint32_t visibility = 0;    ///< bits 1 << pm_ray
 };
 
-/// What surrounds the scene.
-struct World {
-    std::optional<uint32_t> material;  ///< whose emission it is; none: black
-    uint32_t visibility = ~0u;         ///< bits 1 << pm_ray
-};
-
-/// A direction towards a light, chosen with a known density.
-struct LightSample {
-    Vec3 direction;  ///< unit
-    float distance;  ///< up to where a shadow ray must be free
-    Vec3 radiance;   ///< arriving along the direction, divided by the density of the choice
-    float pdf;       ///< density by solid angle where closure sampling can meet the same light; else 0
-};
-
-/// A photon as it leaves a light.
-struct PhotonEmission {
-    Ray ray;
-    Vec3 flux;  ///< W, divided by the density of the choice; still to be divided by the number of photons
-    /// Soft falloff: flux arriving at distance d of `falloff_center` is scaled by d2/(d2 + falloff_radius2).
-    Vec3 falloff_center;
-    float falloff_radius_squared = 0;
-};
-
 /// All lights of a scene; the scene must outlive it.
 class Lights {
   public:
     Lights(const Scene &scene, std::vector<Lamp> lamps, const World &world);
 
     bool empty() const { return total_power_ <= 0; }
-    Vec3 world() const { return world_; }
-    bool has_emissive_triangles() const { return !triangles_.empty(); }
+    bool has_emissive_triangles() const { return triangles_.shines(); }
+    const EmissiveTriangles &emissive_triangles() const { return triangles_; }
+    const WorldLight &world_light() const { return world_; }
+    std::span<const Lamp> lamps() const { return lamps_; }
+    uint32_t world_visibility() const { return world_.visibility(); }
 
     /// Lamps, all emissive triangles, the world: each is a source. Some may be dark.
     size_t source_count() const { return lamps_.size() + 2; }
+    size_t triangles_source() const { return lamps_.size(); }
+    size_t world_source() const { return lamps_.size() + 1; }
     bool shines(size_t source) const { return power_[source] > 0; }
+    /// Power of a source, mean of RGB, W.
+    float power(size_t source) const { return power_[source]; }
 
     /// A source chosen by chance.
     struct Choice {
@@ -73,50 +59,54 @@ class Lights {
     /// Chooses a source by the irradiance that it might bring to the point.
     std::optional<Choice> choose(Vec3 position, float u) const;
 
-    /// Chooses a direction to a source, by u[0] and u[1], of emissive triangles one by u[2].
-    /// @return nothing where the source cannot reach the side that `shading_normal` is on
-    std::optional<LightSample> sample(size_t source, Vec3 position, Vec3 shading_normal,
-                                      const std::array<float, 3> &u) const;
+    /// Probability with which choose() takes a source.
+    float choice_probability(size_t source, Vec3 position) const;
 
-    /// Density by solid angle with which sample() chooses the direction from `position` to a point of an emissive
-    /// triangle, once their source is chosen.
-    float pdf(Vec3 position, const SurfacePoint &emitter) const;
+    /// Chooses a direction to a source that shines. What is invisible to the receiver is not left out: see
+    /// LightSample::visibility.
+    /// @param normal for shading; the world is chosen about it
+    /// @param both_sides the receiver sends on light from both sides of its surface
+    /// @param receiver with which a ray scattered by the receiver would come to the light
+    /// @param u by u[0], u[1]; of emissive triangles one is chosen by u[2], of the world's densities too
+    /// @return nothing where the source cannot reach the position
+    std::optional<LightSample> sample(size_t source, Vec3 position, Vec3 normal, bool both_sides,
+                                      const RayState &receiver, const std::array<float, 3> &u) const;
 
-    /// Probability with which choose() takes the emissive triangles.
-    float triangles_probability(Vec3 position) const {
-        return importance(triangles_source(), position) / total_importance(position);
+    /// The nearest lamp that a ray meets, of those with an extent that are visible to one of the ray's kinds. Lamps
+    /// do not hide what is behind them from shadow rays: who weighs them against sample() adds up meet_all().
+    /// @param is_open no surface ends the ray: lamps at infinity are met wherever the ray is clipped
+    std::optional<LampHit> meet(const Ray &ray, bool is_open) const;
+
+    /// One lamp, likewise.
+    std::optional<LampHit> meet(size_t source, const Ray &ray, bool is_open) const;
+
+    /// Calls visit(LampHit) for each such lamp, in no order.
+    template <class Visit>
+    void meet_all(const Ray &ray, bool is_open, Visit &&visit) const {
+        for (size_t source = 0; source < lamps_.size(); ++source)
+            if (const std::optional<LampHit> hit = meet(source, ray, is_open)) visit(*hit);
     }
 
-    /// Emits one photon: a light by its share of the power, then a point and direction by its radiance
-    /// (Jensen 1996, section 4.1). Nothing if the lights have no power.
-    std::optional<PhotonEmission> emit(Sequence &sequence) const;
+    /// Density by solid angle with which sample() chooses the direction from a position to a point of an emissive
+    /// triangle, once their source is chosen.
+    float triangle_pdf(Vec3 position, const SurfacePoint &emitter) const { return triangles_.pdf(position, emitter); }
 
-    /// Radiance of the nearest lamp that the camera sees along a ray, and its distance, if before the ray's end.
-    /// @param is_open no surface ends the ray: lamps at infinity are seen wherever the ray is clipped
-    std::optional<std::pair<Vec3, float>> seen(const Ray &ray, bool is_open) const;
+    /// Radiance that arrives along a ray that leaves the scene; black where the world is invisible to it.
+    Vec3 world_radiance(Vec3 direction, const RayState &ray) const;
+
+    /// Density by solid angle with which sample() chooses a direction to the world, once that is chosen.
+    float world_pdf(Vec3 direction, Vec3 normal, bool both_sides) const;
 
   private:
-    struct Emitter {  // an emissive triangle
-        uint32_t instance, triangle;
-        double cumulative;  // share of the emitted power up to and with this one
-    };
-
-    void find_emissive_triangles();
-    size_t triangles_source() const { return lamps_.size(); }
-    size_t world_source() const { return lamps_.size() + 1; }
     float importance(size_t source, Vec3 position) const;
     float total_importance(Vec3 position) const;
-    std::optional<LightSample> sample_triangles(Vec3 position, float choice, float u, float v) const;
-    size_t choose_emitter(double choice) const;
-    PhotonEmission emit_from_triangle(float choice, float side, const std::array<float, 4> &u) const;
-    PhotonEmission emit_from_world(const std::array<float, 4> &u) const;
+    std::optional<LightSample> sample_world(Vec3 normal, bool both_sides, const RayState &receiver,
+                                            const std::array<float, 3> &u) const;
 
     const Scene &scene_;
     std::vector<Lamp> lamps_;
-    Vec3 world_;
-    std::vector<Emitter> triangles_;
-    Bounds triangle_bounds_;
-    float triangle_power_ = 0;
+    EmissiveTriangles triangles_;
+    WorldLight world_;
     std::vector<float> power_;  // of each source, mean of RGB, W
     float total_power_ = 0;
 };

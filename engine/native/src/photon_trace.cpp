@@ -2,7 +2,7 @@
 #include "photon_trace.h"
 
 #include "parallel.h"
-#include "sampling.h"
+#include "ray_state.h"
 
 namespace photon_maps {
 
@@ -16,66 +16,151 @@ void add(Flux &sum, Vec3 flux) {
     sum[2] += static_cast<double>(flux.z);
 }
 
-Photon record(const SurfacePoint &hit, Vec3 direction, Vec3 flux, uint32_t bounce) {
-    return {hit.position, flux, pack_normal(hit.normal, std::min(bounce, 255u)), pack_direction(direction)};
+/// By what flux changes where the shading normal differs from the geometric one: photons land and leave by the latter
+/// (Veach 1997, section 5.3). Light from before the one and behind the other brings nothing.
+float normal_correction(const SurfacePoint &hit, Vec3 arriving, Vec3 leaving) {
+    if (hit.shading_normal == hit.normal) return 1;
+    const auto ratio = [](float wanted, float given) {
+        return given > 0 ? shading_ratio(wanted, given) : shading_ratio(-wanted, -given);
+    };
+    return ratio(dot(arriving, hit.shading_normal), dot(arriving, hit.normal)) *
+           ratio(dot(leaving, hit.normal), dot(leaving, hit.shading_normal));
 }
 
-/// Leaves the surface by the cosine about the shading normal; nothing where that leads into the surface.
-/// `flux` becomes that of the scattered photon, before roulette.
-std::optional<Vec3> scatter(const Scene &scene, const SurfacePoint &hit, Vec3 arriving, const std::array<float, 4> &u,
-                            Vec3 &flux) {
-    const Vec3 direction = Frame(hit.shading_normal).to_world(sample_cosine_hemisphere(u[0], u[1]));
-    flux *= albedo(shade(scene, hit, -arriving, {}), all_lobes);
-    if (hit.shading_normal == hit.normal) return direction;
-    const float leaving = dot(direction, hit.normal);
-    const float ratio = shading_ratio(-dot(arriving, hit.shading_normal), -dot(arriving, hit.normal)) *
-                        shading_ratio(leaving, dot(direction, hit.shading_normal));
-    flux = flux * ratio;
-    if (leaving <= 0) return {};
-    return direction;
-}
+/// One photon on its way.
+class PhotonPath {
+  public:
+    PhotonPath(const Scene &scene, const PhotonTracing &tracing, Sequence &sequence, TracedPhotons &traced)
+        : scene_(scene), tracing_(tracing), sequence_(sequence), traced_(traced) {}
 
-/// Follows one photon to its end.
-void trace_photon(const Scene &scene, const PhotonEmission &emission, Sequence &sequence, float count,
-                  uint32_t max_bounces, TracedPhotons &traced) {
-    Ray ray = emission.ray;
-    Vec3 flux = emission.flux / count;
-    for (uint32_t bounce = 0;; ++bounce) {
-        SurfacePoint hit;
-        ++traced.rays;
-        const bool met = scene.intersect(ray, hit);
-        if (bounce == 0) {
-            if (met && emission.falloff_radius_squared > 0) {
-                const float squared = length_squared(hit.position - emission.falloff_center);
-                flux = flux * (squared / (squared + emission.falloff_radius_squared));
-            }
-            add(traced.balance.emitted, flux);
+    void trace(const PhotonEmission &emission) {
+        ray_ = emission.ray;
+        flux_ = emission.flux / static_cast<float>(tracing_.count);
+        // Up to its first scattering a photon goes the way of a shadow ray, and passes what lets those pass.
+        state_.kinds = 1u << PM_RAY_SHADOW | 1u << PM_RAY_DIFFUSE;
+        source_visibility_ = emission.visibility;
+        while (step(emission)) {
         }
-        if (!met) {
-            add(traced.balance.escaped, flux);
-            return;
-        }
-
-        // Record the photon as it arrives.
-        (bounce == 0 ? traced.direct : traced.indirect).push_back(record(hit, ray.direction, flux, bounce));
-
-        // Scatter it.
-        const auto u = sequence.next();
-        Vec3 scattered = flux;
-        const std::optional<Vec3> direction = scatter(scene, hit, ray.direction, u, scattered);
-        if (!direction) scattered = Vec3();
-        add(traced.balance.absorbed, flux - scattered);
-        if (bounce == max_bounces) {
-            add(traced.balance.cut, scattered);
-            return;
-        }
-
-        // Russian roulette by the ratio of the throughputs: surviving photons keep about the same flux.
-        const float survival = std::min(1.0f, max_component(scattered) / max_component(flux));
-        if (!(u[2] < survival)) return;
-        flux = scattered / survival;
-        ray = {hit.origin_above(), *direction};
     }
+
+  private:
+    bool step(const PhotonEmission &emission) {
+        SurfacePoint hit;
+        ++traced_.rays;
+        const bool met = scene_.intersect(ray_, hit);
+        if (state_.depth == 0 && state_.transparent_depth == 0) leave_light(emission, met ? &hit : nullptr);
+        if (!met) {
+            add(traced_.balance.escaped, flux_);
+            return false;
+        }
+        state_.length += hit.distance;
+        const uint32_t kind = 1u << (state_.depth == 0 ? PM_RAY_SHADOW : PM_RAY_DIFFUSE);
+        if (!(scene_.instances[hit.instance].visibility & kind)) pass_by(hit);
+        const Shading shading = shade(scene_, hit, -ray_.direction, state_);
+        record(hit, shading);
+        return scatter(hit, shading);
+    }
+
+    /// An object that shadow rays, or the rays that would come here, do not see is lit, and so is what lies behind it:
+    /// a second photon goes on.
+    void pass_by(const SurfacePoint &hit) const {
+        if (state_.transparent_depth == max_transparent_depth) return;
+        PhotonPath beyond = *this;
+        beyond.ray_.origin = hit.origin_towards(ray_.direction);
+        beyond.state_ = passed(state_);
+        while (beyond.step({})) {
+        }
+    }
+
+    void leave_light(const PhotonEmission &emission, const SurfacePoint *hit) {
+        if (hit && emission.falloff_radius_squared > 0) {
+            const float squared = length_squared(hit->position - emission.falloff_center);
+            flux_ = flux_ * (squared / (squared + emission.falloff_radius_squared));
+        }
+        add(traced_.balance.emitted, flux_);
+    }
+
+    /// Records the photon as it arrives, if its word is one that it is traced for: on what a diffuse ray would come to
+    /// its source from.
+    void record(const SurfacePoint &hit, const Shading &shading) {
+        if (!(lobes_of(shading) & diffuse_lobes & lobes_that_see(source_visibility_))) return;
+        const bool is_direct = state_.depth == 0, is_caustic = !is_direct && !was_diffuse_;
+        if (is_caustic != (tracing_.purpose == PhotonPurpose::caustic)) return;
+        const auto kind = is_direct ? PM_PHOTONS_DIRECT : is_caustic ? PM_PHOTONS_CAUSTIC : PM_PHOTONS_INDIRECT;
+        traced_.photons[kind].push_back({hit.position, flux_,
+                                         pack_normal(hit.normal, std::min<uint32_t>(state_.depth, 255u)),
+                                         pack_direction(ray_.direction)});
+    }
+
+    /// Sends the photon on, or ends it.
+    bool scatter(const SurfacePoint &hit, const Shading &shading) {
+        const Lobes wanted = tracing_.purpose == PhotonPurpose::caustic ? glossy_lobes : all_lobes;
+        const Lobes lobes = wanted & lobes_that_see(source_visibility_);
+        const Vec3 before = flux_;
+        const auto u = sequence_.next();
+
+        // Straight on, or by a closure.
+        const float straight = average(shading.transparency), scattering = average(albedo(shading, lobes));
+        if (!(straight + scattering > 0)) return end(before, {});
+        const float go_straight = straight / (straight + scattering);
+        const bool is_straight = u[3] < go_straight;
+        const float left = is_straight ? u[3] / go_straight : (u[3] - go_straight) / (1 - go_straight);
+        std::optional<ScatterSample> drawn;
+        if (is_straight) {
+            flux_ *= shading.transparency / go_straight;
+        } else {
+            // As camera_path.h has it: at a sheet that encloses nothing flux is scaled in the place of radiance.
+            const bool is_body = scene_.mesh_of(hit).is_closed;
+            drawn = sample(shading, lobes, {u[0], u[1], u[2]}, is_body ? Transport::flux : Transport::radiance);
+            if (!drawn) return end(before, {});
+            flux_ *= drawn->weight * (normal_correction(hit, ray_.direction, drawn->direction) / (1 - go_straight));
+            if (state_.depth == tracing_.max_bounces) {
+                add(traced_.balance.cut, flux_);
+                return end(before, flux_);
+            }
+        }
+
+        // Russian roulette by the ratio of the fluxes: surviving photons keep about the same.
+        const float survival = std::min(1.0f, max_component(flux_) / max_component(before));
+        add(traced_.balance.absorbed, before - flux_);
+        if (!(left < survival) || state_.transparent_depth == max_transparent_depth) return false;
+        flux_ = flux_ / survival;
+        if (is_straight) {
+            ray_.origin = hit.origin_towards(ray_.direction);
+            state_ = passed(state_);
+            return true;
+        }
+        was_diffuse_ = was_diffuse_ || (drawn->lobe & diffuse_lobes) != 0;
+        state_ = scattered(state_, *drawn);
+        source_visibility_ = scene_.instances[hit.instance].visibility;
+        ray_ = {hit.origin_towards(drawn->direction), drawn->direction};
+        return true;
+    }
+
+    bool end(Vec3 before, Vec3 after) {
+        add(traced_.balance.absorbed, before - after);
+        return false;
+    }
+
+    const Scene &scene_;
+    const PhotonTracing &tracing_;
+    Sequence &sequence_;
+    TracedPhotons &traced_;
+    Ray ray_;
+    Vec3 flux_;
+    RayState state_;
+    uint32_t source_visibility_ = ~0u;  ///< of the light or object that sent the photon here: bits 1 << pm_ray
+    bool was_diffuse_ = false;
+};
+
+std::optional<PhotonEmission> emit(const Emission &emission, PhotonPurpose purpose, Sequence &sequence) {
+    return purpose == PhotonPurpose::caustic ? emission.emit_caustic(sequence) : emission.emit(sequence);
+}
+
+/// Appends one list to another and frees it.
+void move_to(std::vector<Photon> &all, std::vector<Photon> &part) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
 }
 
 }  // namespace
@@ -90,7 +175,7 @@ FluxBalance &FluxBalance::operator+=(const FluxBalance &other) {
     return *this;
 }
 
-TracedPhotons trace_photons(const Scene &scene, const Lights &lights, const PhotonTracing &tracing,
+TracedPhotons trace_photons(const Scene &scene, const Emission &emission, const PhotonTracing &tracing,
                             const std::atomic<bool> *cancel) {
     // Trace chunks of photons, each into its own lists.
     const uint64_t chunk_count = (tracing.count + chunk_size - 1) / chunk_size;
@@ -100,27 +185,23 @@ TracedPhotons trace_photons(const Scene &scene, const Lights &lights, const Phot
         for (uint64_t i = begin; i < end; ++i) {
             throw_if_cancelled(cancel);
             Sequence sequence(tracing.first + i, tracing.seed);
-            const std::optional<PhotonEmission> emission = lights.emit(sequence);
-            if (!emission || !(max_component(emission->flux) > 0)) continue;
-            trace_photon(scene, *emission, sequence, static_cast<float>(tracing.count), tracing.max_bounces, chunks[c]);
+            const std::optional<PhotonEmission> photon = emit(emission, tracing.purpose, sequence);
+            if (!photon || !(max_component(photon->flux) > 0)) continue;
+            PhotonPath(scene, tracing, sequence, chunks[c]).trace(*photon);
         }
     });
 
     // Join them in the order of emission.
     TracedPhotons all;
-    size_t direct = 0, indirect = 0;
-    for (const TracedPhotons &chunk : chunks) {
-        direct += chunk.direct.size();
-        indirect += chunk.indirect.size();
+    for (size_t kind = 0; kind < all.photons.size(); ++kind) {
+        size_t count = 0;
+        for (const TracedPhotons &chunk : chunks) count += chunk.photons[kind].size();
+        all.photons[kind].reserve(count);
+        for (TracedPhotons &chunk : chunks) move_to(all.photons[kind], chunk.photons[kind]);
     }
-    all.direct.reserve(direct);
-    all.indirect.reserve(indirect);
-    for (TracedPhotons &chunk : chunks) {
-        all.direct.insert(all.direct.end(), chunk.direct.begin(), chunk.direct.end());
-        all.indirect.insert(all.indirect.end(), chunk.indirect.begin(), chunk.indirect.end());
+    for (const TracedPhotons &chunk : chunks) {
         all.balance += chunk.balance;
         all.rays += chunk.rays;
-        chunk = TracedPhotons();
     }
     return all;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pass 1: photons leave the lights, bounce between diffuse surfaces, and are recorded at every hit.
+// Pass 1: photons leave the lights, scatter, and are recorded where they hit diffuse surfaces.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <vector>
 
+#include "emission.h"
 #include "light.h"
 #include "photon.h"
+#include "photon_maps.h"
 #include "scene.h"
 
 namespace photon_maps {
@@ -22,15 +24,25 @@ struct FluxBalance {
     FluxBalance &operator+=(const FluxBalance &other);
 };
 
-/// The photons of one pass, in the order of their emission.
+/// The photons of one pass, by pm_photon_kind, in the order of their emission.
 struct TracedPhotons {
-    std::vector<Photon> direct;    ///< at their first hit
-    std::vector<Photon> indirect;  ///< after one bounce or more
-    FluxBalance balance;
+    std::array<std::vector<Photon>, 3> photons;
+    FluxBalance balance;  ///< of the photons that are not aimed
     uint64_t rays = 0;
+
+    const std::vector<Photon> &operator[](pm_photon_kind kind) const { return photons[kind]; }
+    size_t size() const { return photons[0].size() + photons[1].size() + photons[2].size(); }
+};
+
+/// What photons are traced for. The words are those of camera_path.h: every diffuse hit is recorded once, by the map
+/// that its word belongs to.
+enum class PhotonPurpose {
+    global,  ///< L D and L (S|D)* D S* D: from all lights in proportion to their power
+    caustic  ///< L S+ D: aimed at what can focus light; a photon ends at its first diffuse scattering
 };
 
 struct PhotonTracing {
+    PhotonPurpose purpose;
     uint64_t first;        ///< global number of the first photon
     uint64_t count;        ///< photons emitted; flux is divided by it
     uint32_t max_bounces;  ///< a photon that has bounced so often is recorded once more and ends
@@ -40,7 +52,7 @@ struct PhotonTracing {
 
 /// Traces photons; the result does not depend on the number of threads.
 /// @throws Cancelled once `cancel` is set
-TracedPhotons trace_photons(const Scene &scene, const Lights &lights, const PhotonTracing &tracing,
+TracedPhotons trace_photons(const Scene &scene, const Emission &emission, const PhotonTracing &tracing,
                             const std::atomic<bool> *cancel);
 
 }  // namespace photon_maps

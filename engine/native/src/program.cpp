@@ -1,45 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program.h"
 
-#include "photon_maps_shader.h"
+#include "evaluate.h"
 #include "scene.h"
-#include "surface.h"
+#include "shader_closures.h"
 
 namespace photon_maps {
 
-void prepare(Material &material, const Scene &) {
-    MaterialTraits traits;
-    traits.may_scatter = false;
-    traits.is_constant = true;
-    for (const pm_instruction &instruction : material.program.instructions) {
-        const Vec3 weight = material.program.constants[material.program.arguments[instruction.first_argument]];
-        if (instruction.op == PM_OP_EMISSION && max_component(weight) > 0) traits.emits = true;
-        if (instruction.op == PM_OP_DIFFUSE && max_component(weight) > 0) traits.lobes |= diffuse_reflection;
+namespace {
+
+/// Runs a program; what its closures do is up to the caller.
+/// @param close called with each closure's instruction and its arguments
+template <class Close>
+void run(const ShaderPoint &point, const Program &program, Close &&close) {
+    Registers registers;
+    for (size_t i = 0; i < program.constants.size(); ++i) registers.set(i, program.constants[i]);
+    const std::span arguments(program.arguments);
+    for (const pm_instruction &instruction : program.instructions) {
+        const Operands operands{registers, arguments.subspan(instruction.first_argument, instruction.argument_count)};
+        if (is_closure(instruction.op))
+            close(instruction, operands);
+        else if (instruction.op == PM_OP_INPUT && instruction.option == PM_INPUT_NORMAL)
+            registers.set(instruction.output, shading_normal(point));  // the one that nearly all have, and many alone
+        else
+            evaluate(point, instruction, operands, registers);
     }
-    traits.may_scatter = traits.lobes != 0;
-    material.traits = traits;
 }
 
-Shading shade(const Scene &, const SurfacePoint &hit, Vec3 outgoing, const RayState &) {
+}  // namespace
+
+Shading shade(const Scene &scene, const SurfacePoint &hit, Vec3 outgoing, const RayState &ray) {
     Shading shading;
     shading.outgoing = outgoing;
     shading.normal = hit.normal;
+    shading.smooth_normal = hit.shading_normal;
     shading.is_backfacing = hit.is_backfacing;
-    const Program &program = hit.material->program;
-    for (const pm_instruction &instruction : program.instructions) {
-        const Vec3 weight = program.constants[program.arguments[instruction.first_argument]];
-        if (instruction.op == PM_OP_EMISSION) shading.emission += weight;
-        if (instruction.op == PM_OP_DIFFUSE) add_diffuse(shading, weight, 0, hit.shading_normal);
+    const Material &material = *hit.material;
+    const ShaderPoint point{scene, material, &hit, outgoing, ray};
+    if (ray.kinds == 1u << PM_RAY_SHADOW) {
+        run(point, material.transparency, [&](const pm_instruction &instruction, const Operands &arguments) {
+            add_transparency(shading, instruction, arguments);
+        });
+    } else {
+        run(point, material.program, [&](const pm_instruction &instruction, const Operands &arguments) {
+            add_closure(shading, point, instruction, arguments);
+        });
     }
+    shading.transparency = min(shading.transparency, {1, 1, 1});
+    shading.emission = min(shading.emission, {max_radiance, max_radiance, max_radiance});
+    shading.holdout = std::min(shading.holdout, 1.0f);
     return shading;
 }
 
-Vec3 shade_world(const Scene &, const Material &material, Vec3, const RayState &) {
+Vec3 shade_world(const Scene &scene, const Material &material, Vec3 direction, const RayState &ray) {
     Vec3 emission;
-    for (const pm_instruction &instruction : material.program.instructions)
-        if (instruction.op == PM_OP_EMISSION)
-            emission += material.program.constants[material.program.arguments[instruction.first_argument]];
-    return emission;
+    const ShaderPoint point{scene, material, nullptr, -direction, ray};
+    run(point, material.program, [&](const pm_instruction &instruction, const Operands &arguments) {
+        emission += world_radiance(instruction, arguments);
+    });
+    return min(emission, {max_radiance, max_radiance, max_radiance});
 }
 
 }  // namespace photon_maps

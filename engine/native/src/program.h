@@ -43,16 +43,19 @@ struct MaterialTraits {
 
 struct Material {
     Program program;
-    uint32_t index = 0;  ///< Blender's pass index
+    Program transparency;  ///< what of it shadow rays need; made by prepare()
+    uint32_t index = 0;    ///< Blender's pass index
     MaterialTraits traits;
 
     bool emits() const { return traits.emits; }
 };
 
-/// Folds what is constant and finds the traits; once the program is complete.
+/// Folds what is constant, drops what nothing depends on, and finds the traits; once, with a program that has passed
+/// validate() and with all textures and tables in the scene.
 void prepare(Material &material, const Scene &scene);
 
-/// Runs the material's program at a point that a ray met.
+/// Runs the material's program at a point that a ray met. Shadow rays (ray.kinds is PM_RAY_SHADOW's bit alone) get the
+/// transparency alone.
 /// @param outgoing unit, towards where the ray came from
 Shading shade(const Scene &scene, const SurfacePoint &hit, Vec3 outgoing, const RayState &ray);
 

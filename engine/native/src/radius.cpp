@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "radius.h"
 
-#include "camera_pass.h"
+#include "camera_path.h"
 #include "estimate.h"
 #include "parallel.h"
 #include "sequence.h"
@@ -11,9 +11,82 @@ namespace photon_maps {
 namespace {
 
 constexpr double photons_in_kernel = 125;
+constexpr double caustic_photons_in_kernel = 20;
+constexpr float least_caustic_pixels = 5;
 constexpr uint64_t max_pilot_photons = 1 << 16;
 constexpr uint64_t pilot_pixels = 512;
 constexpr uint32_t pilot_stream = 0x70696c6f;
+
+/// A diffuse point that the camera sees, and how long the way to it is.
+struct SeenPoint {
+    Vec3 position, normal;
+    float distance;
+};
+
+/// Photons that no pass will trace again.
+struct Pilot {
+    PhotonMap map;
+    double share;  ///< of the photons of a pass
+
+    Pilot(const Scene &scene, const Emission &emission, const PhotonTracing &pass, pm_photon_kind kind,
+          const std::atomic<bool> *cancel) {
+        PhotonTracing tracing = pass;
+        tracing.first = 0;
+        tracing.count = std::min(pass.count, max_pilot_photons);
+        tracing.seed = hash(pass.seed, pilot_stream);
+        const TracedPhotons traced = trace_photons(scene, emission, tracing, cancel);
+        map = PhotonMap(traced[kind], pass.threads, cancel);
+        share = static_cast<double>(tracing.count) / static_cast<double>(pass.count);
+    }
+
+    /// Pilot photons that stand for so many of a pass.
+    double stands_for(double photons, double least) const {
+        return std::round(std::clamp(photons * share, least, photons));
+    }
+};
+
+std::vector<SeenPoint> seen_points(const Scene &scene, const Camera &camera, uint32_t seed,
+                                   const std::atomic<bool> *cancel) {
+    std::vector<SeenPoint> points;
+    for (uint64_t i = 0; i < pilot_pixels; ++i) {
+        throw_if_cancelled(cancel);
+        Sequence sequence(i, hash(seed, pilot_stream));
+        const auto u = sequence.next();
+        SurfacePoint hit;
+        float distance = 0;
+        const Vec2 pixel{u[0] * static_cast<float>(camera.frame_width), u[1] * static_cast<float>(camera.frame_height)};
+        if (first_diffuse_hit(scene, camera.ray(pixel, {u[2], u[3]}), sequence, hit, distance))
+            points.push_back({hit.position, hit.normal, distance});
+    }
+    return points;
+}
+
+float median(std::vector<float> &values) {
+    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Radii that hold k photons around some of the photons themselves.
+std::vector<float> radii_around_photons(const PhotonMap &map, double k, float max_radius,
+                                        const std::atomic<bool> *cancel) {
+    std::vector<float> radii;
+    const PhotonArrays &photons = map.photons();
+    const size_t step = std::max<size_t>(1, map.size() / pilot_pixels);
+    for (size_t i = 0; i < map.size(); i += step) {
+        throw_if_cancelled(cancel);
+        const Vec3 normal = normalize(unpack_normal(photons.normal[i]));
+        const Vec3 position{photons.x[i], photons.y[i], photons.z[i]};
+        radii.push_back(radius_holding(map, {position, normal, normal}, static_cast<size_t>(k), max_radius));
+    }
+    return radii;
+}
+
+/// A radius that holds k pilot photons, scaled to one that holds the wanted number of a pass: their number in a kernel
+/// grows with the square of its radius and with the emitted photons.
+float scaled(float radius, double wanted, const Pilot &pilot, double k) {
+    return static_cast<float>(static_cast<double>(radius) * std::sqrt(wanted * pilot.share / k));
+}
 
 }  // namespace
 
@@ -25,43 +98,41 @@ float shrunk_radius(float first_radius, uint32_t index) {
     return static_cast<float>(static_cast<double>(first_radius) * std::exp(log_squared / 2));
 }
 
-float choose_first_radius(const Scene &scene, const Lights &lights, const Camera &camera, PhotonTracing pass,
-                          const std::atomic<bool> *cancel) {
-    // Trace pilot photons, none of which a pass will trace again.
-    PhotonTracing pilot = pass;
-    pilot.first = 0;
-    pilot.count = std::min(pass.count, max_pilot_photons);
-    pilot.seed = hash(pass.seed, pilot_stream);
-    const TracedPhotons photons = trace_photons(scene, lights, pilot, cancel);
-    const PhotonMap map(photons.indirect, pass.threads, cancel);
+float choose_indirect_radius(const Scene &scene, const Emission &emission, const Camera &camera,
+                             const PhotonTracing &pass, const std::atomic<bool> *cancel) {
+    const Pilot pilot(scene, emission, pass, PM_PHOTONS_INDIRECT, cancel);
     const float max_radius = scene.bounds().radius();
 
-    // Find what radius holds k of them around points that the camera sees.
-    const double share = static_cast<double>(pilot.count) / static_cast<double>(pass.count);
-    const double k = std::round(std::clamp(photons_in_kernel * share, 16.0, photons_in_kernel));
+    // Find what radius holds k of them around points that the camera sees; where it sees too little to judge by, around
+    // the photons themselves. Without any, any radius will do.
+    const double k = pilot.stands_for(photons_in_kernel, 16);
     std::vector<float> radii;
-    const auto ask = [&](Vec3 position, Vec3 normal) {
+    for (const SeenPoint &point : seen_points(scene, camera, pass.seed, cancel)) {
         throw_if_cancelled(cancel);
-        radii.push_back(radius_holding(map, {position, normal, normal}, static_cast<size_t>(k), max_radius));
-    };
-    for (uint64_t i = 0; i < pilot_pixels; ++i) {
-        const auto u = sobol4(i, pilot.seed);
-        SurfacePoint hit;
-        const Vec2 pixel{u[0] * static_cast<float>(camera.frame_width), u[1] * static_cast<float>(camera.frame_height)};
-        if (first_hit(scene, camera, pixel, hit) && (hit.material->traits.lobes & diffuse_lobes) != 0)
-            ask(hit.position, hit.normal);
+        const Query query{point.position, point.normal, point.normal};
+        radii.push_back(radius_holding(pilot.map, query, static_cast<size_t>(k), max_radius));
     }
-    // Where the camera sees too little to judge by, ask around the photons themselves; without any, any radius will do.
-    const size_t step = std::max<size_t>(1, photons.indirect.size() / pilot_pixels);
-    if (radii.empty())
-        for (size_t i = 0; i < photons.indirect.size(); i += step)
-            ask(photons.indirect[i].position, normalize(unpack_normal(photons.indirect[i].normal)));
+    if (radii.empty()) radii = radii_around_photons(pilot.map, k, max_radius, cancel);
     if (radii.empty()) return max_radius / 100;
+    return scaled(median(radii), photons_in_kernel, pilot, k);
+}
 
-    // The median pixel; the number in a kernel grows with the square of its radius and with the emitted photons.
-    std::nth_element(radii.begin(), radii.begin() + static_cast<ptrdiff_t>(radii.size() / 2), radii.end());
-    const double scale = std::sqrt(photons_in_kernel * share / k);
-    return static_cast<float>(static_cast<double>(radii[radii.size() / 2]) * scale);
+float choose_caustic_radius(const Scene &scene, const Emission &emission, const Camera &camera,
+                            const PhotonTracing &pass, const std::atomic<bool> *cancel) {
+    const Pilot pilot(scene, emission, pass, PM_PHOTONS_CAUSTIC, cancel);
+    if (pilot.map.size() == 0) return 0;
+
+    // Around the photons, not the pixels: it is where they lie densely that a caustic is sharp.
+    const float max_radius = scene.bounds().radius() / 8;
+    const double k = pilot.stands_for(caustic_photons_in_kernel, 8);
+    std::vector<float> radii = radii_around_photons(pilot.map, k, max_radius, cancel);
+    const float by_density = scaled(median(radii), caustic_photons_in_kernel, pilot, k);
+
+    std::vector<float> footprints;
+    for (const SeenPoint &point : seen_points(scene, camera, pass.seed, cancel))
+        footprints.push_back(camera.footprint(point.distance));
+    const float by_pixel = footprints.empty() ? 0 : least_caustic_pixels * median(footprints);
+    return std::min(std::max(by_density, by_pixel), max_radius);
 }
 
 }  // namespace photon_maps

@@ -11,7 +11,7 @@ namespace photon_maps {
 
 namespace {
 
-constexpr uint32_t photon_stream = 0x70686f74, camera_stream = 0x63616d65;
+constexpr uint32_t photon_stream = 0x70686f74, caustic_stream = 0x63617573, camera_stream = 0x63616d65;
 constexpr uint64_t min_photon_count = 1 << 16, max_photon_count = 1 << 22;
 
 /// Adds the time that a scope takes.
@@ -35,18 +35,28 @@ uint64_t photon_count_for(const RenderSettings &settings, const Camera &camera) 
 
 }  // namespace
 
-Render::Render(Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings)
+Render::Render(Scene &scene, const Lights &lights, const Emission &emission, const Camera &camera,
+               const RenderSettings &settings)
     : scene_(scene),
       lights_(lights),
+      emission_(emission),
       camera_(camera),
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       photon_count_(photon_count_for(settings, camera)),
       film_(camera.width, camera.height, settings.buffers) {}
 
-bool Render::needs_photons() const {
-    return settings_.integrator == Integrator::photon_map && settings_.max_bounces > 0 && !lights_.empty() &&
-           !scene_.instances.empty();
+bool Render::traces(PhotonPurpose purpose) const {
+    const bool wants_photons = settings_.integrator == Integrator::photon_map && settings_.max_bounces > 0;
+    if (!wants_photons || emission_.empty() || scene_.instances.empty()) return false;
+    return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
+                                             : settings_.use_indirect;
+}
+
+PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
+    const uint32_t stream = purpose == PhotonPurpose::caustic ? caustic_stream : photon_stream;
+    return {purpose,          photon_count_ * index, photon_count_, settings_.max_bounces, hash(settings_.seed, stream),
+            settings_.threads};
 }
 
 void Render::render_pass(uint32_t index) {
@@ -60,75 +70,98 @@ void Render::render_pass(uint32_t index) {
     film_.add(pass_film);
 }
 
-void Render::choose_radius() {
-    const PhotonTracing tracing{0, photon_count_, settings_.max_bounces, hash(settings_.seed, photon_stream),
-                                settings_.threads};
-    Kernel kernel = settings_.kernel;
-    if (!(kernel.radius > 0)) kernel.radius = choose_first_radius(scene_, lights_, camera_, tracing, &cancel_);
-    if (kernel.radius > 0) {
+void Render::choose_radii() {
+    // A radius by hand holds for both maps.
+    Radii radii{settings_.kernel.radius, settings_.kernel.radius};
+    const bool is_chosen = !(settings_.kernel.radius > 0);
+    if (!traces(PhotonPurpose::global))
+        radii.indirect = 0;
+    else if (is_chosen)
+        radii.indirect =
+            choose_indirect_radius(scene_, emission_, camera_, tracing(PhotonPurpose::global, 0), &cancel_);
+    if (!traces(PhotonPurpose::caustic))
+        radii.caustic = 0;
+    else if (is_chosen)
+        radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
+
+    // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
+    Kernel largest = settings_.kernel;
+    largest.radius = std::max(radii.indirect, radii.caustic);
+    if (largest.radius > 0) {
         const std::span<const FeatureEdge> edges = scene_.feature_edges();
-        edges_ = EdgeIndex({edges.begin(), edges.end()}, kernel.radius);
-        // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
+        edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
         constexpr double bearable_crowding = 1024;
         constexpr int most_halvings = 12;
-        const bool is_chosen = !(settings_.kernel.radius > 0);
         for (int halving = 0; is_chosen && edges_.crowding() > bearable_crowding && halving < most_halvings;
              ++halving) {
             throw_if_cancelled(&cancel_);
-            kernel.radius /= 2;
-            edges_ = EdgeIndex({edges.begin(), edges.end()}, kernel.radius);
+            largest.radius /= 2;
+            edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
         }
-        coverage_.emplace(scene_, edges_, kernel);
+        coverage_.emplace(scene_, edges_, largest);
     }
-    first_radius_ = kernel.radius;
+    first_radii_ = {std::min(radii.indirect, largest.radius), std::min(radii.caustic, largest.radius)};
 }
 
-float Render::radius_of_pass(uint32_t index) const {
-    return settings_.use_progressive ? shrunk_radius(*first_radius_, index) : *first_radius_;
+Render::Radii Render::radii_of_pass(uint32_t index) const {
+    if (!settings_.use_progressive) return *first_radii_;
+    return {shrunk_radius(first_radii_->indirect, index), shrunk_radius(first_radii_->caustic, index)};
 }
 
 PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
     return PhotonMap(photons, settings_.threads, &cancel_);
 }
 
-void Render::render_into(Film &pass_film, uint32_t index) {
-    PhotonMap map;
+TracedPhotons Render::trace(uint32_t index) {
     TracedPhotons photons;
-    float radius = 0;
+    if (traces(PhotonPurpose::global))
+        photons = trace_photons(scene_, emission_, tracing(PhotonPurpose::global, index), &cancel_);
+    if (first_radii_->caustic > 0) {
+        TracedPhotons aimed = trace_photons(scene_, emission_, tracing(PhotonPurpose::caustic, index), &cancel_);
+        photons.photons[PM_PHOTONS_CAUSTIC] = std::move(aimed.photons[PM_PHOTONS_CAUSTIC]);
+        photons.rays += aimed.rays;
+    }
+    return photons;
+}
+
+void Render::render_into(Film &pass_film, uint32_t index) {
     RenderStatistics spent;
     scene_.build(settings_.threads, &cancel_);
-    if (needs_photons()) {
-        // Choose the kernel before the first pass.
-        if (!first_radius_) {
-            const Stopwatch watch(spent.seconds_trace);
-            choose_radius();
-        }
-        radius = radius_of_pass(index);
 
-        // Pass 1: trace this pass's own photons; build the map of those with a bounce.
-        {
-            const Stopwatch watch(spent.seconds_trace);
-            const PhotonTracing tracing{photon_count_ * index, photon_count_, settings_.max_bounces,
-                                        hash(settings_.seed, photon_stream), settings_.threads};
-            photons = trace_photons(scene_, lights_, tracing, &cancel_);
-        }
-        if (radius > 0) {
-            const Stopwatch watch(spent.seconds_build);
-            map = map_of(photons.indirect);
-        }
+    // Choose the kernels before the first pass.
+    if (!first_radii_) {
+        const Stopwatch watch(spent.seconds_trace);
+        choose_radii();
+    }
+    const Radii radii = radii_of_pass(index);
+
+    // Pass 1: trace this pass's own photons; build the maps.
+    TracedPhotons photons;
+    {
+        const Stopwatch watch(spent.seconds_trace);
+        photons = trace(index);
+    }
+    PhotonMap indirect, caustic;
+    {
+        const Stopwatch watch(spent.seconds_build);
+        if (radii.indirect > 0) indirect = map_of(photons[PM_PHOTONS_INDIRECT]);
+        if (radii.caustic > 0) caustic = map_of(photons[PM_PHOTONS_CAUSTIC]);
     }
 
     // Pass 2: camera rays.
     {
         const Stopwatch watch(spent.seconds_gather);
-        Kernel kernel = settings_.kernel;
-        kernel.radius = radius;
-        const PhotonGather gather{&map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel};
+        const auto gather = [&](const PhotonMap &map, float radius) -> PhotonGather {
+            Kernel kernel = settings_.kernel;
+            kernel.radius = radius;
+            return {&map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel};
+        };
+        const PhotonMaps maps{gather(indirect, radii.indirect), gather(caustic, radii.caustic)};
         const CameraPass pass{scene_,
                               lights_,
                               camera_,
                               pixel_sampler_,
-                              settings_.integrator == Integrator::photon_map ? &gather : nullptr,
+                              settings_.integrator == Integrator::photon_map ? &maps : nullptr,
                               settings_.max_bounces,
                               hash(settings_.seed, camera_stream),
                               index,
@@ -138,30 +171,34 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     }
 
     // Keep the photons for those who ask, and add up what the pass took.
-    const size_t photon_bytes = (photons.direct.size() + photons.indirect.size()) * sizeof(Photon);
     const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
-                          pass_film.memory_bytes() + photon_bytes + map.memory_bytes() +
-                          (coverage_ ? coverage_->memory_bytes() : 0);
+                          pass_film.memory_bytes() + photons.size() * sizeof(Photon) + indirect.memory_bytes() +
+                          caustic.memory_bytes() + (coverage_ ? coverage_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
-    total.photons_emitted += needs_photons() ? photon_count_ : 0;
-    total.photons_stored += photons.direct.size() + photons.indirect.size();
+    total.photons_emitted += photon_count_ * (uint64_t{traces(PhotonPurpose::global)} + uint64_t{radii.caustic > 0});
+    total.photons_stored += photons.size();
+    total.caustic_photons += photons[PM_PHOTONS_CAUSTIC].size();
     total.rays += spent.rays + photons.rays;
     total.balance += photons.balance;
-    if (film_.passes() == 0) total.radius_first = radius;
-    total.radius_last = last_radius_ = radius;
+    if (film_.passes() == 0) {
+        total.radius_first = radii.indirect;
+        total.caustic_radius_first = radii.caustic;
+    }
+    total.radius_last = radii.indirect;
+    total.caustic_radius_last = radii.caustic;
     total.seconds_trace += spent.seconds_trace;
     total.seconds_build += spent.seconds_build;
     total.seconds_gather += spent.seconds_gather;
-    photons_[PM_PHOTONS_DIRECT] = std::move(photons.direct);
-    photons_[PM_PHOTONS_INDIRECT] = std::move(photons.indirect);
+    photons_ = std::move(photons.photons);
+    last_radii_ = radii;
 }
 
-Vec3 Render::irradiance(const PhotonMap &map, Vec3 point, Vec3 normal) const {
-    if (map.size() == 0 || !(last_radius_ > 0)) return {};
+Vec3 Render::irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const {
     Kernel kernel = settings_.kernel;
-    kernel.radius = last_radius_;
-    return estimate_irradiance(map, edges_, {point, normal, normal}, kernel).irradiance;
+    kernel.radius = kind == PM_PHOTONS_CAUSTIC ? last_radii_.caustic : last_radii_.indirect;
+    if (map.size() == 0 || !(kernel.radius > 0)) return {};
+    return estimate_photons(map, edges_, {point, normal, normal}, kernel).value;
 }
 
 }  // namespace photon_maps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loop of passes: photons, map, camera rays; and what they cost.
+// The loop of passes: photons, maps, camera rays; and what they cost.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1 };
 
 struct RenderSettings {
     Integrator integrator;
-    uint64_t photon_count;  ///< per pass; 0: as many as the frame has pixels, within bounds
-    Kernel kernel;          ///< of the first pass; radius 0: chosen from pilot photons
+    uint64_t photon_count;  ///< per pass and map; 0: as many as the frame has pixels, within bounds
+    Kernel kernel;          ///< of the first pass; radius 0: chosen from pilot photons, for each map its own
     uint32_t max_bounces;
     bool use_caustics, use_indirect;
     uint32_t seed;
@@ -31,12 +31,10 @@ struct RenderSettings {
 };
 
 struct RenderStatistics {
-    uint64_t photons_emitted = 0, photons_stored = 0, rays = 0;
+    uint64_t photons_emitted = 0, photons_stored = 0, caustic_photons = 0, rays = 0;
     size_t peak_memory_bytes = 0;
     float radius_first = 0, radius_last = 0;
-    uint64_t caustic_photons = 0;
     float caustic_radius_first = 0, caustic_radius_last = 0;
-    uint32_t caster_count = 0;
     FluxBalance balance;  ///< sum over the passes
     double seconds_trace = 0, seconds_build = 0, seconds_gather = 0;
 };
@@ -44,7 +42,8 @@ struct RenderStatistics {
 /// One picture of a frozen scene, which must outlive it. The first pass builds the scene.
 class Render {
   public:
-    Render(Scene &scene, const Lights &lights, const Camera &camera, const RenderSettings &settings);
+    Render(Scene &scene, const Lights &lights, const Emission &emission, const Camera &camera,
+           const RenderSettings &settings);
 
     /// Renders a pass, a function of scene, camera, settings and index alone, and adds it to the film.
     /// @throws Cancelled after cancel(); the film then holds the passes finished before
@@ -59,29 +58,37 @@ class Render {
 
     /// Photons of the last finished pass.
     const std::vector<Photon> &photons(pm_photon_kind kind) const { return photons_[kind]; }
-    /// Irradiance at a point from photons like those.
-    Vec3 irradiance(const PhotonMap &map, Vec3 point, Vec3 normal) const;
+    /// Irradiance at a point from photons like those of a kind, by that kind's radius.
+    Vec3 irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const;
     PhotonMap map_of(const std::vector<Photon> &photons) const;
 
   private:
-    bool needs_photons() const;
-    void choose_radius();
-    float radius_of_pass(uint32_t index) const;
+    /// Kernel radii of a pass; 0 where there is no such map.
+    struct Radii {
+        float indirect = 0, caustic = 0;
+    };
+
+    bool traces(PhotonPurpose purpose) const;
+    PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
+    void choose_radii();
+    Radii radii_of_pass(uint32_t index) const;
+    TracedPhotons trace(uint32_t index);
     void render_into(Film &pass_film, uint32_t index);
 
     Scene &scene_;
     const Lights &lights_;
+    const Emission &emission_;
     Camera camera_;
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
     uint64_t photon_count_;
-    std::optional<float> first_radius_;  ///< of pass 0, once chosen
+    std::optional<Radii> first_radii_;  ///< of pass 0, once chosen
     EdgeIndex edges_;
-    std::optional<Coverage> coverage_;  ///< made along with the first radius, if above 0
+    std::optional<Coverage> coverage_;  ///< made along with the first radii, if there is a map
     Film film_;
     RenderStatistics statistics_;
     std::array<std::vector<Photon>, 3> photons_;  ///< by pm_photon_kind
-    float last_radius_ = 0;
+    Radii last_radii_;
     std::atomic<bool> cancel_ = false;
 };
 

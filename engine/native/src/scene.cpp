@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene.h"
 
+#include "closed_mesh.h"
 #include "parallel.h"
 #include "validate.h"
 
 namespace photon_maps {
 
 namespace {
+
+/// Embree's ray masks: bits of pm_ray, and for shadow rays whether an instance may let light through.
+constexpr uint32_t opaque_shadow = 1u << PM_RAY_COUNT, transparent_shadow = 2u << PM_RAY_COUNT;
+
+/// So many transparent surfaces may lie behind each other.
+constexpr int max_transparent_depth = 256;
 
 rtc::Ray to_embree(const Ray &ray) {
     return {ray.origin.x,
@@ -35,6 +42,7 @@ void Scene::freeze() {
     if (frozen_) return;
     count_uses();
     find_bounds();
+    find_closed_meshes();
     move_single_uses_to_world();
     frozen_ = true;
 }
@@ -57,6 +65,17 @@ void Scene::count_uses() {
         meshes.push_back(meshes[instance.mesh]);
         meshes.back().use_count = 1;
         instance.mesh = static_cast<uint32_t>(meshes.size() - 1);
+    }
+}
+
+void Scene::find_closed_meshes() {
+    for (const Instance &instance : instances) {
+        Mesh &mesh = meshes[instance.mesh];
+        const bool refracts =
+            any_material(instance, [](const MaterialTraits &t) { return (t.lobes & glossy_transmission) != 0; });
+        if (refracts && !mesh.is_closed)
+            mesh.is_closed =
+                photon_maps::is_closed(std::span(mesh.vertices).first(mesh.vertex_count()), mesh.triangles);
     }
 }
 
@@ -117,13 +136,14 @@ Scene::SceneHandle Scene::new_scene(const std::atomic<bool> *cancel) const {
     return scene;
 }
 
-void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) const {
+void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id, uint32_t mask) const {
     const rtc::Functions &f = embree_->functions();
     const rtc::Geometry geometry = f.rtcNewGeometry(embree_->device(), rtc::GeometryType::triangle);
     f.rtcSetSharedGeometryBuffer(geometry, rtc::BufferType::vertex, 0, rtc::Format::float3, mesh.vertices.data(), 0,
                                  sizeof(Vec3), mesh.vertex_count());
     f.rtcSetSharedGeometryBuffer(geometry, rtc::BufferType::index, 0, rtc::Format::uint3, mesh.triangles.data(), 0,
                                  sizeof(Triangle), mesh.triangles.size());
+    f.rtcSetGeometryMask(geometry, mask);
     f.rtcCommitGeometry(geometry);
     f.rtcAttachGeometryByID(scene, geometry, id);
     f.rtcReleaseGeometry(geometry);
@@ -137,15 +157,18 @@ void Scene::build_embree(const std::atomic<bool> *cancel) {
     for (const Mesh &mesh : meshes) {
         mesh_scenes_.push_back(mesh.use_count > 1 ? new_scene(cancel) : SceneHandle(nullptr, {embree_.get()}));
         if (mesh.use_count <= 1) continue;
-        attach_triangles(mesh_scenes_.back().get(), mesh, 0);
+        attach_triangles(mesh_scenes_.back().get(), mesh, 0, ~0u);
         f.rtcCommitScene(mesh_scenes_.back().get());
         embree_->check("building the acceleration structure of a mesh");
     }
     top_scene_ = new_scene(cancel);
+    has_transparent_ = false;
     for (uint32_t i = 0; i < instances.size(); ++i) {
         const Mesh &mesh = meshes[instances[i].mesh];
+        const uint32_t mask = embree_mask(instances[i]);
+        has_transparent_ = has_transparent_ || (mask & transparent_shadow) != 0;
         if (mesh.use_count == 1) {
-            attach_triangles(top_scene_.get(), mesh, i);
+            attach_triangles(top_scene_.get(), mesh, i, mask);
             continue;
         }
         const Transform &t = instances[i].transform;
@@ -154,6 +177,7 @@ void Scene::build_embree(const std::atomic<bool> *cancel) {
         const rtc::Geometry geometry = f.rtcNewGeometry(embree_->device(), rtc::GeometryType::instance);
         f.rtcSetGeometryInstancedScene(geometry, mesh_scenes_[instances[i].mesh].get());
         f.rtcSetGeometryTransform(geometry, 0, rtc::Format::float3x4_row_major, rows);
+        f.rtcSetGeometryMask(geometry, mask);
         f.rtcCommitGeometry(geometry);
         f.rtcAttachGeometryByID(top_scene_.get(), geometry, i);
         f.rtcReleaseGeometry(geometry);
@@ -214,10 +238,46 @@ SurfacePoint Scene::surface_point(uint32_t instance_index, uint32_t triangle, fl
     return hit;
 }
 
-bool Scene::occluded(const Ray &ray) const {
+Vec3 Scene::transmittance(const Ray &ray, uint64_t &rays) const {
     rtc::Ray r = to_embree(ray);
+    r.mask = opaque_shadow;
+    ++rays;
     embree_->functions().rtcOccluded1(top_scene_.get(), &r, nullptr);
-    return r.tfar < 0;  // Embree marks a met ray by -infinity
+    if (r.tfar < 0) return {};  // Embree marks a met ray by -infinity
+    return has_transparent_ ? transmittance_of_transparent(ray, rays) : Vec3{1, 1, 1};
+}
+
+Vec3 Scene::transmittance_of_transparent(Ray ray, uint64_t &rays) const {
+    Vec3 passed{1, 1, 1};
+    RayState state;
+    state.kinds = 1u << PM_RAY_SHADOW;
+    const float unit = length(ray.direction);
+    ray.kinds = transparent_shadow;
+    SurfacePoint hit;
+    for (; state.transparent_depth < max_transparent_depth; ++state.transparent_depth) {
+        ++rays;
+        if (!intersect(ray, hit)) return passed;
+        state.length += hit.distance * unit;
+        passed *= shade(*this, hit, -ray.direction / unit, state).transparency;
+        if (max_component(passed) <= 0) return {};
+        ray.far -= hit.distance;
+        ray.near = 0;
+        ray.origin = hit.origin_towards(ray.direction);
+    }
+    return {};
+}
+
+bool Scene::any_material(const Instance &instance, bool (*has)(const MaterialTraits &)) const {
+    const auto first = slot_materials.begin() + instance.first_slot;
+    const auto count = static_cast<ptrdiff_t>(meshes[instance.mesh].slot_count);
+    return std::any_of(first, first + count, [&](uint32_t material) { return has(materials[material].traits); });
+}
+
+uint32_t Scene::embree_mask(const Instance &instance) const {
+    const bool casts_shadow = instance.visibility & 1u << PM_RAY_SHADOW;
+    const bool is_transparent = any_material(instance, [](const MaterialTraits &t) { return t.is_transparent; });
+    const uint32_t shadow = is_transparent ? transparent_shadow : opaque_shadow;
+    return (instance.visibility & ((1u << PM_RAY_COUNT) - 1)) | (casts_shadow ? shadow : 0);
 }
 
 const Material &Scene::material(uint32_t instance, uint32_t triangle) const {

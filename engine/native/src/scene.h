@@ -37,6 +37,7 @@ struct Mesh {
     std::vector<Attribute> attributes;
     uint32_t slot_count = 0;  ///< one more than the largest slot; 0 without triangles
     uint32_t use_count = 0;   ///< instances that show it
+    bool is_closed = false;   ///< encloses a body; known of meshes that refract
 
     size_t vertex_count() const { return vertices.size() - 1; }
 };
@@ -75,6 +76,13 @@ struct Ray {
     uint32_t kinds = ~0u;  ///< bits 1 << pm_ray: surfaces that are visible to none of them are passed through
 };
 
+/// The view that shaders ask for.
+struct View {
+    Transform world_to_camera;  ///< the camera looks along its local -z, y up
+    pm_camera_type type = PM_CAMERA_PERSPECTIVE;
+    float left = -1, right = 1, bottom = -1, top = 1;  ///< the window, as pm_camera has it
+};
+
 /// What a ray met.
 struct SurfacePoint {
     Vec3 position;
@@ -87,8 +95,10 @@ struct SurfacePoint {
     bool is_backfacing;  ///< the ray came from behind, by the triangle's winding
     const Material *material;
 
-    /// Where a ray that leaves to the side of `normal` may start without meeting the surface again.
-    Vec3 origin_above() const { return position + normal * error; }
+    /// Where a ray that leaves in a direction may start without meeting the surface again.
+    Vec3 origin_towards(Vec3 direction) const {
+        return position + normal * std::copysign(error, dot(direction, normal));
+    }
 };
 
 /// The triangle that an instance shows, in world space.
@@ -111,6 +121,7 @@ class Scene {
     std::vector<Image> images;
     std::vector<Texture> textures;
     std::vector<Table> tables;
+    View view;
 
     /// Ends the changes: moves meshes of a single use into world space and finds the bounds. Again: does nothing.
     /// @throws std::invalid_argument if an instance reaches beyond the coordinates that single precision bears
@@ -125,9 +136,12 @@ class Scene {
     /// The point of a triangle with barycentric coordinates u, v, as seen against a direction of travel; its distance
     /// is 0.
     SurfacePoint surface_point(uint32_t instance, uint32_t triangle, float u, float v, Vec3 travel) const;
-    bool occluded(const Ray &ray) const;
+    /// What share of light comes through along a shadow ray: all, nothing, or what transparent materials let pass.
+    /// @param rays is raised by the rays that were traced
+    Vec3 transmittance(const Ray &ray, uint64_t &rays) const;
 
     const Material &material(uint32_t instance, uint32_t triangle) const;
+    const Mesh &mesh_of(const SurfacePoint &point) const { return meshes[instances[point.instance].mesh]; }
     WorldTriangle world_triangle(uint32_t instance, uint32_t triangle) const;
     /// Bound of the rounding error of a point computed on the triangle, in scene units.
     float position_error(uint32_t instance, uint32_t triangle) const;
@@ -146,10 +160,14 @@ class Scene {
     void count_uses();
     void move_single_uses_to_world();
     void find_bounds();
+    void find_closed_meshes();
+    bool any_material(const Instance &instance, bool (*has)(const MaterialTraits &)) const;
+    uint32_t embree_mask(const Instance &instance) const;
+    Vec3 transmittance_of_transparent(Ray ray, uint64_t &rays) const;
     void find_world_edges(int threads, const std::atomic<bool> *cancel);
     void build_embree(const std::atomic<bool> *cancel);
     SceneHandle new_scene(const std::atomic<bool> *cancel) const;
-    void attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id) const;
+    void attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id, uint32_t mask) const;
 
     std::shared_ptr<const Embree> embree_;
     bool frozen_ = false, built_ = false;
@@ -157,6 +175,7 @@ class Scene {
     std::vector<SceneHandle> mesh_scenes_;  ///< of the meshes that are instanced
     SceneHandle top_scene_{nullptr, {nullptr}};
     std::vector<FeatureEdge> feature_edges_;
+    bool has_transparent_ = false;  ///< instances that shadow rays may pass
     Bounds bounds_;
 };
 

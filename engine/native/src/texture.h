@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "photon_maps.h"
@@ -41,5 +42,12 @@ struct Table {
     bool is_stepped;
     std::vector<Rgba> entries;
 };
+
+/// Looks a texture up.
+/// @param normal unit, in the object's space: box projection alone asks for it
+Rgba look_up(const Texture &texture, std::span<const Image> images, Vec3 position, Vec3 normal);
+
+/// Converts an IEEE half precision number.
+float half_to_float(uint16_t half);
 
 }  // namespace photon_maps

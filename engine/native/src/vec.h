@@ -82,6 +82,14 @@ struct Transform {
         const Vec3 v = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
         return determinant() < 0 ? -v : v;
     }
+    /// The vector that vector() takes to v; 0 if the transform flattens.
+    constexpr Vec3 inverse_vector(Vec3 v) const {
+        const float d = determinant();
+        return d == 0 ? Vec3() : Vec3{dot(cross(y, z), v), dot(cross(z, x), v), dot(cross(x, y), v)} / d;
+    }
+    constexpr Vec3 inverse_point(Vec3 p) const { return inverse_vector(p - origin); }
+    /// The normal that normal() takes to n, but for its length.
+    constexpr Vec3 inverse_normal(Vec3 n) const { return {dot(x, n), dot(y, n), dot(z, n)}; }
 };
 
 }  // namespace photon_maps

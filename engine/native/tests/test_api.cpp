@@ -16,6 +16,7 @@
 #include "check.h"
 #include "photon_maps.h"
 #include "photon_maps_shader.h"
+#include "shader_ops.h"
 
 using photon_maps::test::Checks;
 
@@ -72,6 +73,7 @@ struct Arrays {
         camera.transform[11] = 0.8f;
         settings.struct_size = sizeof settings;
         settings.photon_count = 500;
+        settings.use_caustics = settings.use_indirect = 1;
         settings.filter = PM_FILTER_EPANECHNIKOV;
         settings.cone_k = settings.pixel_filter_width = 1;
         settings.max_bounces = 5;
@@ -220,6 +222,14 @@ void test_garbage_is_refused_or_rendered(Checks &checks, pm_device *device) {
         if (random() % 5 == 0) spoil(arrays.first_slots, index);
         if (random() % 5 == 0) arrays.triangles.resize(3 * (random() % 4));
         if (random() % 5 == 0) spoil(arrays.constants, number);
+        if (random() % 5 == 0) spoil(arrays.arguments, index);
+        for (pm_instruction &instruction : arrays.instructions) {
+            const auto fields = {&instruction.op,     &instruction.option,         &instruction.shift,
+                                 &instruction.output, &instruction.first_argument, &instruction.argument_count};
+            if (random() % 5 == 0)
+                for (uint32_t *field : fields)
+                    if (random() % 4 == 0) *field = index();
+        }
         if (random() % 5 == 0) spoil(arrays.camera.transform, number);
         if (random() % 9 == 0) spoil(arrays.camera.region, index);
         if (random() % 9 == 0) arrays.settings.radius = number();
@@ -244,6 +254,50 @@ void test_garbage_is_refused_or_rendered(Checks &checks, pm_device *device) {
     checks.that(refused > 100 && rendered > 100, "both happened");
 }
 
+/// A shader that passes all checks, of random operations on the worst numbers there are.
+void make_random_shader(Arrays &arrays, std::mt19937 &random) {
+    constexpr uint32_t constant_count = 6;
+    arrays.constants.clear();
+    while (arrays.constants.size() < 3 * constant_count) {
+        const float v = garbage(random);
+        if (std::abs(v) <= 1e15f) arrays.constants.push_back(v);
+    }
+    arrays.instructions.clear();
+    arrays.arguments.clear();
+    uint32_t written = constant_count;
+    for (uint32_t count = 0; count < 12; ++count) {
+        const bool is_last = count >= 9;
+        const auto op = static_cast<uint32_t>(is_last ? PM_OP_DIFFUSE + random() % (PM_OP_COUNT - PM_OP_DIFFUSE)
+                                                      : random() % (PM_OP_GRADIENT + 1));
+        if (op == PM_OP_TABLE || op == PM_OP_CURVES || op == PM_OP_TEXTURE) continue;
+        const uint32_t limit = photon_maps::shape_of(op, 0)->option_count;
+        const auto option = static_cast<uint32_t>(limit > 0 ? random() % limit : 0);
+        const auto shape = *photon_maps::shape_of(op, option);
+        arrays.instructions.push_back({op, option, static_cast<uint32_t>(shape.can_shift ? random() % 3 : 0), written,
+                                       static_cast<uint32_t>(arrays.arguments.size()), shape.argument_count});
+        for (uint32_t i = 0; i < shape.argument_count; ++i)
+            arrays.arguments.push_back(static_cast<uint32_t>(random() % written));
+        written += shape.output_count;
+    }
+}
+
+void test_any_shader_renders(Checks &checks, pm_device *device) {
+    std::mt19937 random(2);
+    for (int trial = 0; trial < 500; ++trial) {
+        Arrays arrays;
+        arrays.settings.photon_count = 20;
+        make_random_shader(arrays, random);
+        pm_status status{};
+        const Render render = make_render(device, arrays, status);
+        checks.that(status == PM_OK, pm_last_error());
+        if (status == PM_OK) status = pm_render_pass(render.get(), 0);
+        checks.that(status == PM_OK, pm_last_error());
+        std::vector<float> pixels(size_t{4} * 64);
+        checks.that(pm_render_read(render.get(), PM_PASS_COMBINED, pixels.data(), pixels.size()) == PM_OK, "is read");
+        checks.that(all_finite(pixels), "shader " + std::to_string(trial) + " is finite");
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -258,5 +312,6 @@ int main() {
     test_photons_are_read_and_estimated(checks, device.get());
     test_a_cancel_from_another_thread_ends_a_pass(checks, device.get());
     test_garbage_is_refused_or_rendered(checks, device.get());
+    test_any_shader_renders(checks, device.get());
     return checks.report();
 }

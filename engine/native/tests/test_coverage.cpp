@@ -63,6 +63,7 @@ struct World {
         scene.instances.emplace_back();
         scene.slot_materials = {0};
         scene.materials.resize(1);
+        scene.materials[0].traits.lobes = diffuse_reflection;
         scene.freeze();
         scene.build(1, nullptr);
         edges = EdgeIndex({scene.feature_edges().begin(), scene.feature_edges().end()}, largest_radius);

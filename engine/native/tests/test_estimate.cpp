@@ -97,16 +97,16 @@ void check_against_brute_force(test::Checks &checks) {
         const double share = is_cut ? double{KernelRegion(index, position, up, kernel).share()} : 1;
         const Estimate expected =
             brute_force(photons, is_cut ? edges : std::vector<FeatureEdge>{}, query, kernel, share);
-        const Estimate found = estimate_irradiance(map, is_cut ? index : no_edges, query, kernel);
+        const Estimate found = estimate_photons(map, is_cut ? index : no_edges, query, kernel);
         checks.that(expected.photons == 0 || found.photons > 0, "photons are found");
         checks.near(found.photons, expected.photons, 0, "the number of photons");
         for (int c = 0; c < 3; ++c) {
-            const double tolerance = 2e-5 * double{expected.irradiance[c]};
-            checks.near(double{found.irradiance[c]}, double{expected.irradiance[c]}, tolerance, "irradiance");
+            const double tolerance = 2e-5 * double{expected.value[c]};
+            checks.near(double{found.value[c]}, double{expected.value[c]}, tolerance, "irradiance");
         }
     }
     const Query query{{0.5f, 0.5f, 0}, up, up};
-    checks.that(estimate_irradiance(PhotonMap(), index, query, {PM_FILTER_NONE, 0.1f, 1}).photons == 0, "an empty map");
+    checks.that(estimate_photons(PhotonMap(), index, query, {PM_FILTER_NONE, 0.1f, 1}).photons == 0, "an empty map");
 }
 
 /// Photons on a square lattice over a region of the plane z = 0: irradiance 1 wherever the surface is.
@@ -134,8 +134,8 @@ void check_flat(test::Checks &checks, const std::string &name, const std::vector
     for (const pm_filter filter : filters) {
         for (const Vec3 p : points) {
             const Kernel kernel{filter, 0.2f, 1};
-            const Estimate found = estimate_irradiance(map, index, {p, normal, normal}, kernel);
-            checks.near(double{found.irradiance.y}, 1, 0.01,
+            const Estimate found = estimate_photons(map, index, {p, normal, normal}, kernel);
+            checks.near(double{found.value.y}, 1, 0.01,
                         name + " at " + std::to_string(p.x) + ", " + std::to_string(p.y) + " by filter " +
                             std::to_string(filter));
         }
@@ -186,8 +186,8 @@ void check_where_surfaces_end(test::Checks &checks) {
 
     // Without edges the corner is dark: the check above can fail.
     const PhotonMap map(lattice(1.0f / 512, up, in_square), 2, nullptr);
-    const Estimate dark = estimate_irradiance(map, EdgeIndex(), {{0.49f, 0.49f, 0}, up, up}, {PM_FILTER_NONE, 0.2f, 1});
-    checks.that(dark.irradiance.x < 0.4f, "without edges a corner is dark");
+    const Estimate dark = estimate_photons(map, EdgeIndex(), {{0.49f, 0.49f, 0}, up, up}, {PM_FILTER_NONE, 0.2f, 1});
+    checks.that(dark.value.x < 0.4f, "without edges a corner is dark");
 }
 
 void check_shading_normals(test::Checks &checks) {
@@ -195,8 +195,8 @@ void check_shading_normals(test::Checks &checks) {
     const PhotonMap map(lattice(1.0f / 256, up, [](Vec3) { return true; }), 2, nullptr);
     for (const float angle : {0.1f, 0.5f, 1.0f}) {
         const Query query{{0, 0, 0}, up, {std::sin(angle), 0, std::cos(angle)}};
-        const Estimate found = estimate_irradiance(map, EdgeIndex(), query, {PM_FILTER_EPANECHNIKOV, 0.2f, 1});
-        checks.near(double{found.irradiance.x}, std::cos(double{angle}), 0.01, "a tilted shading normal");
+        const Estimate found = estimate_photons(map, EdgeIndex(), query, {PM_FILTER_EPANECHNIKOV, 0.2f, 1});
+        checks.near(double{found.value.x}, std::cos(double{angle}), 0.01, "a tilted shading normal");
     }
 }
 
@@ -215,7 +215,7 @@ void check_radius_holding(test::Checks &checks) {
         const Query query{{0.3f * uniform(random), 0.3f * uniform(random), 0}, up, up};
         const float radius = radius_holding(map, query, k, 1);
         const auto count = [&](float r) {
-            return estimate_irradiance(map, EdgeIndex(), query, {PM_FILTER_NONE, r, 1}).photons;
+            return estimate_photons(map, EdgeIndex(), query, {PM_FILTER_NONE, r, 1}).photons;
         };
         checks.that(count(radius * 1.0001f) >= k, "the radius holds k photons");
         checks.that(count(radius * 0.9999f) < k, "a smaller one does not");

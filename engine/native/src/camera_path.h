@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One path from the camera, and what it brings to its pixel.
+//
+// Each closure is diffuse (D) or glossy (S, specular however rough); what a surface scatters is the sum of both, so
+// each path of light is exactly one word, and one row of this table carries it (Heckbert 1990; * any number, + at least
+// one):
+//
+//   from light to eye       photon map                             path tracing
+//   L E                     the ray meets the light                the same
+//   L S* S E                the path goes on until it meets the    the same
+//                           light, and at its vertices samples
+//                           the lights (multiple importance)
+//   L D S* E                light sampling at D, and a ray from    the same, by the path's
+//                           D that may meet an emissive mesh       next ray
+//   L S+ D S* E             caustic map, at the first D from       the path goes on
+//                           the eye
+//   L (S|D)* D S* D S* E    global map, at the first D from the    the path goes on
+//                           eye
+//
+// Straight passage through transparent surfaces is no scattering: shadow rays, photons and paths all pass.
+//
+// Refraction scales radiance, not flux, where a path enters or leaves a body. A sheet that encloses nothing stands for
+// a pane or for the surface of water, and who looks through it must not see all darker by the square of its index:
+// there radiance is left alone, and flux takes the factor. What lies under water has it once either way. A path that
+// leaves a body without having entered it began there, and is scaled by nothing: the camera measures in its own medium.
+#pragma once
+
+#include "camera_pass.h"
+#include "sequence.h"
+
+namespace photon_maps {
+
+/// Follows a ray of the camera.
+/// @param rays is raised by the rays that were traced
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, uint64_t &rays);
+
+/// Follows a ray of the camera through glossy and transparent surfaces to the first diffuse one.
+/// @return whether it met one; `distance` is then the length of the way
+bool first_diffuse_hit(const Scene &scene, const Ray &ray, Sequence &sequence, SurfacePoint &hit, float &distance);
+
+}  // namespace photon_maps
