@@ -57,6 +57,7 @@ def corner_lines(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.stack(points), np.stack(normals)
 
 
+@pytest.mark.campaign
 def test_photons_alone_are_flat_into_the_corners() -> None:
     """The photons' irradiance is the same on all of the lines that run into the corners of the room."""
     settings = {"radius": 0.05 * ROOM, "use_progressive": False, "photon_count": 1 << 18}
