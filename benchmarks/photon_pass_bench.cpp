@@ -8,6 +8,7 @@
 #include "measure.h"
 #include "parallel.h"
 #include "photon_map.h"
+#include "photon_maps_shader.h"
 #include "photon_trace.h"
 
 using namespace photon_maps;
@@ -23,10 +24,19 @@ constexpr int rounds = 7;
 void add_object(Scene &scene, std::vector<Vec3> vertices, std::vector<Triangle> triangles, Vec3 albedo) {
     const auto number = static_cast<uint32_t>(scene.meshes.size());
     vertices.emplace_back();  // Embree reads 16 bytes at each
-    scene.meshes.push_back({std::move(vertices), std::move(triangles), {}, {}});
-    scene.materials.push_back({albedo, {}});
+    Mesh &mesh = scene.meshes.emplace_back();
+    mesh.vertices = std::move(vertices);
+    mesh.triangles = std::move(triangles);
+    mesh.slot_count = 1;
+    Material &material = scene.materials.emplace_back();
+    material.program = {.constants = {albedo, {}},
+                        .instructions = {{PM_OP_INPUT, PM_INPUT_NORMAL, 0, 2, 0, 0}, {PM_OP_DIFFUSE, 0, 0, 3, 0, 3}},
+                        .arguments = {0, 1, 2},
+                        .register_count = 3};
+    prepare(material, scene);
     scene.slot_materials.push_back(number);
-    scene.instances.push_back({number, number, {}});
+    Instance &instance = scene.instances.emplace_back();
+    instance.mesh = instance.first_slot = number;
 }
 
 void add_wall(Scene &scene, Vec3 corner, Vec3 along, Vec3 up, Vec3 albedo) {
@@ -114,7 +124,7 @@ Recording rays_of(const std::function<TracedPhotons(int)> &pass, Embree &embree)
     const TracedPhotons photons = pass(1);
     intersect = recording().intersect;
     bench::require(photons.rays == recording().rays.size(), "rays of the pass were missed");
-    bench::require(photons.direct.size() + photons.indirect.size() == recording().hits, "a hit left no photon");
+    bench::require(photons.size() == recording().hits, "a hit left no photon");
     return std::move(recording());
 }
 
@@ -143,16 +153,17 @@ void run(const char *path) {
     const Lights lights(scene, {ceiling_lamp()}, {});
     const Emission emission(scene, lights);
     const auto pass = [&](int threads) {
-        return trace_photons(scene, emission, {0, photon_count, max_bounces, seed, threads}, nullptr);
+        return trace_photons(scene, emission, {PhotonPurpose::global, 0, photon_count, max_bounces, seed, threads},
+                             nullptr);
     };
     const Recording recorded = rays_of(pass, *embree);
     const auto rays = static_cast<double>(recorded.rays.size());
     const TracedPhotons photons = pass(1);
-    const auto indirect = static_cast<double>(photons.indirect.size());
+    const auto indirect = static_cast<double>(photons[PM_PHOTONS_INDIRECT].size());
     std::printf("%llu photons emitted, %.0f rays, %llu photons stored\n", static_cast<unsigned long long>(photon_count),
                 rays, static_cast<unsigned long long>(recorded.hits));
 
-    const auto build = [&](int threads) { PhotonMap(photons.indirect, threads, nullptr); };
+    const auto build = [&](int threads) { PhotonMap(photons[PM_PHOTONS_INDIRECT], threads, nullptr); };
     const std::vector<bench::Times> times =
         bench::run_by_turns(rounds, {[&] { trace_bare(recorded, 1); }, [&] { pass(1); }, [&] { build(1); },
                                      [&] { trace_bare(recorded, 2); }, [&] { pass(2); }, [&] { build(2); }});

@@ -26,7 +26,7 @@ struct Lamp {
     float spot_angle = 0, spot_blend = 0;
     float spread = pi;          ///< rectangle, ellipse: full angle
     bool soft_falloff = false;  ///< point, spot: scaled by d2/(d2 + r2)
-    uint32_t visibility = 0;    ///< bits 1 << pm_ray
+    uint32_t visibility = ~0u;  ///< bits 1 << pm_ray
 };
 
 /// All lights of a scene; the scene must outlive it.
