@@ -8,6 +8,8 @@ import math
 import bpy
 from mathutils import Euler, Matrix, Vector
 
+from .demo_parts import link, node_material
+
 WHITE = (0.75, 0.73, 0.70)
 RED = (0.62, 0.09, 0.07)
 GREEN = (0.12, 0.42, 0.14)
@@ -22,7 +24,7 @@ def room() -> bpy.types.Scene:
     """Build a white room with a red and a green wall, lit by a lamp, and by sun and sky through a window."""
     scene = bpy.context.scene
     scene.name = "Room"
-    materials = {name: _diffuse(name, color) for name, color in _COLORS.items()}
+    materials = {name: node_material(name, "BsdfDiffuse", color) for name, color in _COLORS.items()}
     _walls(scene, materials)
     _text(scene, materials["Gold"])
     _curve(scene, materials["Blue"])
@@ -38,28 +40,6 @@ def room() -> bpy.types.Scene:
 _COLORS = {"White": WHITE, "Red wall": RED, "Green wall": GREEN, "Blue": BLUE, "Gold": GOLD}
 
 
-def _diffuse(name: str, color: tuple[float, float, float]) -> bpy.types.Material:
-    material = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0, 0):  # later materials always use their nodes, and to say so is deprecated
-        material.use_nodes = True
-    material.diffuse_color = (*color, 1.0)
-    tree = material.node_tree
-    tree.nodes.clear()
-    diffuse, output = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeOutputMaterial")
-    diffuse.location.x = -200
-    diffuse.inputs["Color"].default_value = (*color, 1.0)
-    tree.links.new(diffuse.outputs["BSDF"], output.inputs["Surface"])
-    return material
-
-
-def _link(scene: bpy.types.Scene, name: str, data: bpy.types.ID | None, *materials: bpy.types.Material):
-    thing = bpy.data.objects.new(name, data)
-    scene.collection.objects.link(thing)
-    for material in materials:
-        data.materials.append(material)
-    return thing
-
-
 def _walls(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) -> None:
     """A closed room around the camera; the right wall has a window: four quads around a hole."""
     w, h = HALF_WIDTH, HEIGHT
@@ -71,7 +51,7 @@ def _walls(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) -> 
     mesh = bpy.data.meshes.new("Walls")
     mesh.from_pydata(vertices, [], faces)
     mesh.polygons.foreach_set("material_index", [0, 0, 0, 0, 1, 2, 2, 2, 2])
-    _link(scene, "Walls", mesh, materials["White"], materials["Red wall"], materials["Green wall"])
+    link(scene, "Walls", mesh, materials["White"], materials["Red wall"], materials["Green wall"])
 
 
 def _text(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
@@ -79,7 +59,7 @@ def _text(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
     text.body = "Photon Maps"
     text.align_x = "CENTER"
     text.size, text.extrude, text.bevel_depth = 0.52, 0.06, 0.012
-    thing = _link(scene, "Title", text, material)
+    thing = link(scene, "Title", text, material)
     thing.matrix_world = (
         Matrix.Translation((0.0, BACK - 0.12, 2.2)) @ Euler((math.pi / 2, 0.0, 0.0)).to_matrix().to_4x4()
     )
@@ -96,7 +76,7 @@ def _curve(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
         angle = 2.0 * math.pi * turns * step / (steps - 1)
         point.co = (0.3 * math.cos(angle), 0.3 * math.sin(angle), 0.06 + 0.95 * step / (steps - 1), 1.0)
     spline.use_endpoint_u = True
-    _link(scene, "Helix", curve, material).location = (1.25, 0.75, 0.0)
+    link(scene, "Helix", curve, material).location = (1.25, 0.75, 0.0)
 
 
 def _head(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
@@ -119,7 +99,7 @@ def _drops(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
     for x, y, radius in ((0.0, 0.0, 0.42), (0.3, 0.1, 0.32), (-0.1, 0.3, 0.28)):
         element = ball.elements.new()
         element.co, element.radius = (x, y, 0.0), radius
-    _link(scene, "Drops", ball, material).location = (0.75, -0.85, 0.2)
+    link(scene, "Drops", ball, material).location = (0.75, -0.85, 0.2)
 
 
 def _stools(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) -> None:
@@ -147,7 +127,7 @@ def _stools(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) ->
         @ Matrix.Diagonal((0.8, 0.8, 0.5, 1)),
     }
     for name, matrix in placements.items():
-        instance = _link(scene, name, None)
+        instance = link(scene, name, None)
         instance.instance_type, instance.instance_collection = "COLLECTION", stool
         instance.matrix_world = matrix
 
@@ -155,16 +135,16 @@ def _stools(scene: bpy.types.Scene, materials: dict[str, bpy.types.Material]) ->
 def _lights(scene: bpy.types.Scene) -> None:
     lamp = bpy.data.lights.new("Ceiling lamp", "AREA")
     lamp.shape, lamp.size, lamp.size_y, lamp.energy, lamp.color = "RECTANGLE", 1.2, 0.8, 45.0, (1.0, 0.86, 0.68)
-    thing = _link(scene, "Ceiling lamp", lamp)
+    thing = link(scene, "Ceiling lamp", lamp)
     thing.location = (0.0, 0.0, HEIGHT - 0.01)
     thing.visible_camera = True
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle, sun.color = 14.0, math.radians(0.6), (1.0, 0.93, 0.82)
-    _link(scene, "Sun", sun).rotation_euler = Vector((1.0, 0.12, 0.62)).to_track_quat("Z", "Y").to_euler()
+    link(scene, "Sun", sun).rotation_euler = Vector((1.0, 0.12, 0.62)).to_track_quat("Z", "Y").to_euler()
     # The sky: a lamp as large as the window finds its way in, where most light of a world would not
     sky = bpy.data.lights.new("Sky", "AREA")
     sky.shape, sky.size, sky.size_y, sky.energy, sky.color = "RECTANGLE", 1.3, 1.4, 6.0, (0.45, 0.68, 1.0)
-    thing = _link(scene, "Sky", sky)
+    thing = link(scene, "Sky", sky)
     thing.location = (HALF_WIDTH + 0.02, 0.05, 1.7)
     thing.rotation_euler = (math.pi / 2, 0.0, math.pi / 2)
     thing.visible_camera = True
@@ -173,7 +153,7 @@ def _lights(scene: bpy.types.Scene) -> None:
 def _camera(scene: bpy.types.Scene) -> None:
     camera = bpy.data.cameras.new("Camera")
     camera.lens = 30.0
-    thing = _link(scene, "Camera", camera)
+    thing = link(scene, "Camera", camera)
     thing.location = (0.0, -5.3, 1.5)
     thing.rotation_euler = (math.pi / 2, 0.0, 0.0)
     scene.camera = thing

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from photon_maps_native import Image, Texture
+from photon_maps_native import Attribute, Domain, Image, Mesh, Table, Texture
 from photon_maps_native.scene_data import Alpha, Extension, Interpolation
 from photon_maps_native.shader import Gradient, Op
 
 from tests.shader_values import COUNT, assert_same, numbers, run
+from tests.shapes import Picture, box_filtered, camera, quad, scene
 
 
 def test_checker_and_gradients() -> None:
@@ -76,3 +79,25 @@ def test_closest_pixels_and_what_alpha_means() -> None:
     ignored = Texture((0,), alpha=Alpha.IGNORED)
     result = run(lambda s, v: s.add(Op.TEXTURE, v, outputs=2) + 1, uv, images=(Image(pixels),), textures=(ignored,))
     assert_same(result, np.ones(3))
+
+
+def test_memory_counts_images_attributes_and_tables() -> None:
+    """The peak of a picture rises by the bytes of an array that the scene holds, and by hardly more."""
+    bare = scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], camera((0, -3, 2), (0, 0, 0), (8, 8)))
+    image = np.ones((1024, 1024, 4), np.float32)
+    table = np.zeros((1 << 16, 4), np.float32)
+    values = np.zeros((1 << 16, 3), np.float32)
+    faces = Mesh(np.zeros((3, 3), np.float32), np.zeros((1 << 16, 3), np.uint32))
+    with_values = replace(faces, attributes=[Attribute(1, Domain.FACE, values)])
+
+    def memory(**fields: object) -> int:
+        data = replace(bare, **fields)
+        return Picture(data, box_filtered(photon_count=1000, radius=0.1)).run(1).render.statistics().memory_bytes
+
+    few = 8192  # bytes for what describes an array
+    for least, more, less in (
+        (image.nbytes, {"images": [Image(image)]}, {}),
+        (table.nbytes, {"tables": [Table(table)]}, {}),
+        (values.nbytes, {"meshes": [*bare.meshes, with_values]}, {"meshes": [*bare.meshes, faces]}),
+    ):
+        assert least <= memory(**more) - memory(**less) <= least + few

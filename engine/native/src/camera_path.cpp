@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "camera_path.h"
 
+#include "mis.h"
+#include "path_word.h"
 #include "ray_state.h"
 
 namespace photon_maps {
 
 namespace {
-
-/// Weight of a sample against another way to choose it (Veach 1997, section 9.2.4: the power heuristic).
-float power_heuristic(float pdf, float other_pdf) {
-    const float ratio = other_pdf / pdf;
-    return 1 / (1 + ratio * ratio);
-}
 
 /// What the eye sees directly, in mirrors or through glass asks every source while they are few: choosing among them
 /// costs more in noise than the rays saved are worth.
@@ -20,24 +16,6 @@ constexpr size_t few_sources = 8;
 /// A path whose throughput times this is below 1 plays Russian roulette: glossy reflections on plastics bring little,
 /// and cost as much as all the rest of their pixel.
 constexpr float roulette_scale = 8;
-
-/// The scatterings of a path, from the eye on.
-struct Word {
-    uint32_t length = 0, diffuse = 0;
-    bool ends_glossy = false;
-
-    Word then(Lobes lobes) const {
-        const bool is_diffuse = (lobes & diffuse_lobes) != 0;
-        return {length + 1, diffuse + (is_diffuse ? 1 : 0), !is_diffuse};
-    }
-
-    /// The buffer that light arriving by this word belongs to.
-    Vec3 &buffer(PixelSample &sample) const {
-        if (length == 0) return sample.emission;
-        if (length == 1) return sample.direct;
-        return diffuse == 1 && ends_glossy ? sample.caustic : sample.indirect;
-    }
-};
 
 class CameraPath {
   public:
@@ -147,10 +125,12 @@ void CameraPath::add_lamps(const SurfacePoint *hit) {
     if (hit) way.far = hit->distance;
     pass_.lights.meet_all(way, !hit, [&](const LampHit &lamp) {
         // Light sampling would have found it from the origin, which may lie before transparent surfaces.
-        const auto there = pass_.lights.meet(
-            lamp.source, Ray{origin_.position, ray_.direction, 0, std::numeric_limits<float>::infinity(), ray_.kinds},
-            true);
-        const float pdf = origin_.pdf > 0 && there ? there->pdf : lamp.pdf;
+        float pdf = lamp.pdf;
+        if (origin_.pdf > 0) {
+            constexpr float infinity = std::numeric_limits<float>::infinity();
+            const Ray drawn{origin_.position, ray_.direction, 0, infinity, ray_.kinds};
+            if (const auto there = pass_.lights.meet(lamp.source, drawn, true)) pdf = there->pdf;
+        }
         word_.buffer(sample_) += throughput_ * lamp.radiance * weight(lamp.source, pdf);
     });
 }
@@ -194,7 +174,7 @@ void CameraPath::sample_lights(const SurfacePoint &hit, const Shading &shading) 
 
 void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, const Lights::Choice &choice,
                                const std::array<float, 4> &u) {
-    const bool both_sides = (lobes_of(shading) & (diffuse_transmission | glossy_transmission)) != 0;
+    const bool both_sides = (lobes_of(shading) & transmissive_lobes) != 0;
     const auto light = pass_.lights.sample(choice.source, hit.position, hit.shading_normal, both_sides,
                                            receiver(shading), {u[0], u[1], choice.left});
     if (!light) return;
@@ -314,7 +294,7 @@ bool CameraPath::go_on(const SurfacePoint &hit, const Shading &shading) {
     throughput_ *= drawn->weight / chosen;
     if (!survives(throughput_, left)) return false;
     origin_ = {drawn->is_singular ? 0 : chosen * drawn->pdf, hit.position, hit.shading_normal,
-               (lobes_of(shading) & (diffuse_transmission | glossy_transmission)) != 0, asks_every_source()};
+               (lobes_of(shading) & transmissive_lobes) != 0, asks_every_source()};
     word_ = word_.then(lobes);
     state_ = scattered(state_, *drawn);
     ray_ = {hit.origin_towards(drawn->direction), drawn->direction};
@@ -334,34 +314,6 @@ bool CameraPath::survives(Vec3 weight, float u) {
 
 PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, uint64_t &rays) {
     return CameraPath(pass, sequence, rays).trace(ray);
-}
-
-bool first_diffuse_hit(const Scene &scene, const Ray &camera_ray, Sequence &sequence, SurfacePoint &hit,
-                       float &distance) {
-    constexpr int most_steps = 16;
-    Ray ray = camera_ray;
-    RayState state;
-    state.kinds = ray.kinds = 1u << PM_RAY_CAMERA;
-    distance = 0;
-    for (int step = 0; step < most_steps; ++step) {
-        if (!scene.intersect(ray, hit)) return false;
-        distance += hit.distance * length(ray.direction);
-        const Vec3 direction = normalize(ray.direction);
-        const Shading shading = shade(scene, hit, -direction, state);
-        if (lobes_of(shading) & diffuse_lobes) return true;
-        const auto u = sequence.next();
-        if (u[3] < average(shading.transparency)) {
-            state = passed(state);
-            ray = {hit.origin_towards(direction), direction, 0, std::numeric_limits<float>::infinity(), ray.kinds};
-            continue;
-        }
-        const auto drawn = sample(shading, glossy_lobes, {u[0], u[1], u[2]}, Transport::radiance);
-        if (!drawn) return false;
-        state = scattered(state, *drawn);
-        ray = {hit.origin_towards(drawn->direction), drawn->direction};
-        ray.kinds = visible_kind(drawn->lobe);
-    }
-    return false;
 }
 
 }  // namespace photon_maps

@@ -34,8 +34,4 @@ namespace photon_maps {
 /// @param rays is raised by the rays that were traced
 PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, uint64_t &rays);
 
-/// Follows a ray of the camera through glossy and transparent surfaces to the first diffuse one.
-/// @return whether it met one; `distance` is then the length of the way
-bool first_diffuse_hit(const Scene &scene, const Ray &ray, Sequence &sequence, SurfacePoint &hit, float &distance);
-
 }  // namespace photon_maps

@@ -10,7 +10,6 @@ namespace photon_maps {
 constexpr Vec3 white{1, 1, 1};
 
 constexpr float square(float x) { return x * x; }
-constexpr Vec3 mix(Vec3 a, Vec3 b, float share) { return a * (1 - share) + b * share; }
 constexpr Vec3 clamp01(Vec3 a) { return min(max(a, {}), white); }
 inline Vec3 sqrt(Vec3 a) { return {std::sqrt(a.x), std::sqrt(a.y), std::sqrt(a.z)}; }
 constexpr Vec3 divide(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }

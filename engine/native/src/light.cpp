@@ -115,12 +115,4 @@ std::optional<LampHit> Lights::meet(size_t source, const Ray &ray, bool is_open)
     return hit;
 }
 
-std::optional<LampHit> Lights::meet(const Ray &ray, bool is_open) const {
-    std::optional<LampHit> nearest;
-    meet_all(ray, is_open, [&](const LampHit &hit) {
-        if (!nearest || hit.distance < nearest->distance) nearest = hit;
-    });
-    return nearest;
-}
-
 }  // namespace photon_maps

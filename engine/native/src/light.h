@@ -72,15 +72,12 @@ class Lights {
     std::optional<LightSample> sample(size_t source, Vec3 position, Vec3 normal, bool both_sides,
                                       const RayState &receiver, const std::array<float, 3> &u) const;
 
-    /// The nearest lamp that a ray meets, of those with an extent that are visible to one of the ray's kinds. Lamps
-    /// do not hide what is behind them from shadow rays: who weighs them against sample() adds up meet_all().
+    /// Where a ray meets a lamp, if that has an extent and is visible to one of the ray's kinds.
     /// @param is_open no surface ends the ray: lamps at infinity are met wherever the ray is clipped
-    std::optional<LampHit> meet(const Ray &ray, bool is_open) const;
-
-    /// One lamp, likewise.
     std::optional<LampHit> meet(size_t source, const Ray &ray, bool is_open) const;
 
-    /// Calls visit(LampHit) for each such lamp, in no order.
+    /// Calls visit(LampHit) for each lamp that the ray meets, in no order: lamps hide nothing, so who weighs them
+    /// against sample() adds up all.
     template <class Visit>
     void meet_all(const Ray &ray, bool is_open, Visit &&visit) const {
         for (size_t source = 0; source < lamps_.size(); ++source)

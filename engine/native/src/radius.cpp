@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "radius.h"
 
-#include "camera_path.h"
 #include "estimate.h"
+#include "first_diffuse_hit.h"
 #include "parallel.h"
 #include "sequence.h"
 

@@ -3,6 +3,7 @@
 
 #include "closed_mesh.h"
 #include "parallel.h"
+#include "ray_state.h"
 #include "validate.h"
 
 namespace photon_maps {
@@ -11,9 +12,6 @@ namespace {
 
 /// Embree's ray masks: bits of pm_ray, and for shadow rays whether an instance may let light through.
 constexpr uint32_t opaque_shadow = 1u << PM_RAY_COUNT, transparent_shadow = 2u << PM_RAY_COUNT;
-
-/// So many transparent surfaces may lie behind each other.
-constexpr int max_transparent_depth = 256;
 
 rtc::Ray to_embree(const Ray &ray) {
     return {ray.origin.x,
@@ -248,18 +246,18 @@ Vec3 Scene::transmittance(const Ray &ray, uint64_t &rays) const {
 }
 
 Vec3 Scene::transmittance_of_transparent(Ray ray, uint64_t &rays) const {
-    Vec3 passed{1, 1, 1};
+    Vec3 transmitted{1, 1, 1};
     RayState state;
     state.kinds = 1u << PM_RAY_SHADOW;
     const float unit = length(ray.direction);
     ray.kinds = transparent_shadow;
     SurfacePoint hit;
-    for (; state.transparent_depth < max_transparent_depth; ++state.transparent_depth) {
+    for (; state.transparent_depth < max_transparent_depth; state = passed(state)) {
         ++rays;
-        if (!intersect(ray, hit)) return passed;
+        if (!intersect(ray, hit)) return transmitted;
         state.length += hit.distance * unit;
-        passed *= shade(*this, hit, -ray.direction / unit, state).transparency;
-        if (max_component(passed) <= 0) return {};
+        transmitted *= shade(*this, hit, -ray.direction / unit, state).transparency;
+        if (max_component(transmitted) <= 0) return {};
         ray.far -= hit.distance;
         ray.near = 0;
         ray.origin = hit.origin_towards(ray.direction);
@@ -306,14 +304,6 @@ float Scene::position_error(uint32_t instance, uint32_t triangle) const {
     const Transform &m = i.transform;
     const Vec3 terms = mesh.use_count == 1 ? v : abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z + abs(m.origin);
     return 8 * std::numeric_limits<float>::epsilon() * max_component(terms);
-}
-
-size_t Scene::memory_bytes() const {
-    size_t bytes = feature_edges_.size() * sizeof(FeatureEdge) + instances.size() * sizeof(Instance);
-    for (const Mesh &mesh : meshes)
-        bytes += mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle) +
-                 mesh.slots.size() * sizeof(uint32_t) + mesh.corner_normals.size() * sizeof(Vec3);
-    return bytes;
 }
 
 }  // namespace photon_maps

@@ -148,6 +148,7 @@ class Scene {
     const Bounds &bounds() const { return bounds_; }
     /// Edges where surfaces stop or fold, in world space.
     std::span<const FeatureEdge> feature_edges() const { return feature_edges_; }
+    /// Of all arrays; without Embree's structure.
     size_t memory_bytes() const;
 
   private:

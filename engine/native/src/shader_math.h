@@ -22,7 +22,6 @@ constexpr Vec3 splat(float v) { return {v, v, v}; }
 /// Between 0 and 1; not a number becomes 0.
 constexpr float saturate(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }
 constexpr Vec3 saturate(Vec3 v) { return {saturate(v.x), saturate(v.y), saturate(v.z)}; }
-constexpr Vec3 mix(Vec3 a, Vec3 b, float t) { return a * (1 - t) + b * t; }
 /// A function of the components, each by itself.
 template <class Function>
 constexpr Vec3 by_component(Function function, Vec3 a) {

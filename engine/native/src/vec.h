@@ -49,6 +49,7 @@ constexpr float max_component(Vec3 a) { return std::max(a.x, std::max(a.y, a.z))
 constexpr float average(Vec3 a) { return (a.x + a.y + a.z) / 3; }
 constexpr Vec3 min(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 constexpr Vec3 max(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+constexpr Vec3 mix(Vec3 a, Vec3 b, float share) { return a * (1 - share) + b * share; }
 inline Vec3 abs(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
 inline bool is_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 

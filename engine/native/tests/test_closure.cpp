@@ -7,14 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "check.h"
-#include "surface.h"
+#include "surface_checks.h"
 
 using namespace photon_maps;
+using namespace photon_maps::test;
 
 namespace {
-
-constexpr Vec3 up{0, 0, 1}, white{1, 1, 1}, orange{0.8f, 0.5f, 0.2f};
 
 using Add = std::function<void(Shading &, float roughness, Vec3 normal)>;
 
@@ -22,28 +20,6 @@ struct Named {
     std::string name;
     Add add;
 };
-
-Principled principled(Vec3 base_color, float roughness, Vec3 normal) {
-    return {.base_color = base_color,
-            .metallic = 0,
-            .roughness = roughness,
-            .ior = 1.5f,
-            .alpha = 1,
-            .normal = normal,
-            .diffuse_roughness = 0,
-            .specular_level = 0.5f,
-            .specular_tint = white,
-            .transmission = 0,
-            .coat = 0,
-            .coat_roughness = 0.2f,
-            .coat_ior = 1.5f,
-            .coat_tint = white,
-            .coat_normal = normal,
-            .sheen = 0,
-            .sheen_roughness = 0.5f,
-            .sheen_tint = white,
-            .emission = {}};
-}
 
 /// Everything that surface.h adds, in one colour, alone and mixed.
 std::vector<Named> all_closures(Vec3 color, bool multiple) {
@@ -66,10 +42,11 @@ std::vector<Named> all_closures(Vec3 color, bool multiple) {
              add_glass(s, white * 0.4f, color, r, 1.4f, n, multiple);
          }},
         {"principled",
-         [=](Shading &s, float r, Vec3 n) { add_principled(s, white, principled(color, r, n), multiple); }},
+         [=](Shading &s, float r, Vec3 n) { add_principled(s, white, plain_principled(color, r, n), multiple); }},
         {"principled with all",
          [=](Shading &s, float r, Vec3 n) {
-             Principled inputs = principled(color, r, n);
+             Principled inputs = plain_principled(color, r, n);
+             inputs.coat_roughness = 0.2f;
              inputs.metallic = inputs.transmission = inputs.coat = inputs.sheen = inputs.diffuse_roughness = 0.4f;
              add_principled(s, white, inputs, multiple);
          }},
@@ -81,16 +58,8 @@ Vec3 direction(float degrees, float around = 0) {
     return {std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle)};
 }
 
-Shading seen(Vec3 outgoing, bool is_backfacing = false) {
-    Shading shading;
-    shading.outgoing = outgoing;
-    shading.normal = up;
-    shading.is_backfacing = is_backfacing;
-    return shading;
-}
-
 Shading seen(const Named &closure, float roughness, Vec3 outgoing, bool is_backfacing = false, Vec3 normal = up) {
-    Shading shading = seen(outgoing, is_backfacing);
+    Shading shading = test::seen(outgoing, is_backfacing);
     closure.add(shading, roughness, normal);
     return shading;
 }
@@ -195,8 +164,7 @@ double chi_squared_deviation(const Shading &shading, Lobes lobes, const Bins &bi
 }
 
 /// Sampling against the density, and its weights against the integral of what evaluate() gives.
-void check_sampling(test::Checks &checks, const Shading &shading, Lobes lobes, Transport transport,
-                    const std::string &name) {
+void check_sampling(Checks &checks, const Shading &shading, Lobes lobes, Transport transport, const std::string &name) {
     constexpr int count = 20000;
     const Bins bins = integrate(shading, lobes, transport);
     const Mean mean = mean_weight(shading, lobes, transport, count);
@@ -208,7 +176,7 @@ void check_sampling(test::Checks &checks, const Shading &shading, Lobes lobes, T
         checks.near(chi_squared_deviation(shading, lobes, bins, count), 0, 5, name + ": directions follow pdf()");
 }
 
-void check_all_sampling(test::Checks &checks) {
+void check_all_sampling(Checks &checks) {
     for (const Named &closure : all_closures(orange, true))
         for (const float roughness : {0.5f, 1.0f})
             for (const float degrees : {20.0f, 75.0f})
@@ -230,7 +198,7 @@ void check_all_sampling(test::Checks &checks) {
     }
 }
 
-void check_energy(test::Checks &checks) {
+void check_energy(Checks &checks) {
     for (const bool multiple : {false, true})
         for (const Named &closure : all_closures(white, multiple))
             for (const float roughness : {0.0f, 0.005f, 0.15f, 0.45f, 0.75f, 1.0f})
@@ -256,7 +224,7 @@ void check_energy(test::Checks &checks) {
 }
 
 /// Helmholtz: f(a, b) = f(b, a), over the squared indices on the two sides.
-void check_reciprocity(test::Checks &checks) {
+void check_reciprocity(Checks &checks) {
     const auto f = [](const Named &closure, float roughness, Vec3 outgoing, Vec3 incoming, bool flipped) {
         const Vec3 mirror{1, 1, flipped ? -1.0f : 1.0f};  // so that the back is above
         const Shading shading = seen(closure, roughness, outgoing * mirror, flipped);
@@ -286,7 +254,7 @@ void check_reciprocity(test::Checks &checks) {
 }  // namespace
 
 int main() {
-    test::Checks checks;
+    Checks checks;
     check_all_sampling(checks);
     check_energy(checks);
     check_reciprocity(checks);

@@ -59,7 +59,8 @@ void check_lamp(Checks &checks, const std::string &name, const Lamp &lamp, float
         return lights.sample(0, {}, up, false, ray_of(PM_RAY_DIFFUSE), u);
     };
     const auto look = [&](Vec3 direction) {
-        const std::optional<LampHit> hit = lights.meet({{}, direction * 2.0f, 0, infinity, 1u << PM_RAY_DIFFUSE}, true);
+        const std::optional<LampHit> hit =
+            lights.meet(0, {{}, direction * 2.0f, 0, infinity, 1u << PM_RAY_DIFFUSE}, true);
         return hit ? Seen{hit->pdf, hit->radiance} : Seen{};
     };
     check_source(checks, name, draw, look, {normalize(lamp.transform.z), cone, irradiance, tolerance});
@@ -68,19 +69,19 @@ void check_lamp(Checks &checks, const std::string &name, const Lamp &lamp, float
     const std::optional<LightSample> sample = draw({0.3f, 0.6f, 0.5f});
     if (!sample) return checks.that(false, name + ": a sample");
     Ray ray{{}, sample->direction * 2.0f, 0, infinity, 1u << PM_RAY_DIFFUSE};
-    const std::optional<LampHit> hit = lights.meet(ray, true);
+    const std::optional<LampHit> hit = lights.meet(0, ray, true);
     if (!hit) return checks.that(false, name + ": the sample is met");
     if (std::isinf(sample->distance)) {
-        checks.that(std::isinf(hit->distance) && !lights.meet(ray, false), name + ": lies beyond all surfaces");
+        checks.that(std::isinf(hit->distance) && !lights.meet(0, ray, false), name + ": lies beyond all surfaces");
     } else {
         checks.near(2.0 * static_cast<double>(hit->distance), static_cast<double>(sample->distance),
                     2e-4 * static_cast<double>(sample->distance), name + ": distance");
         ray.far = hit->distance * 0.99f;
-        checks.that(!lights.meet(ray, false), name + ": behind a surface it is not met");
+        checks.that(!lights.meet(0, ray, false), name + ": behind a surface it is not met");
     }
     ray.far = infinity;
     ray.kinds = 1u << PM_RAY_GLOSSY;
-    checks.that(!lights.meet(ray, true), name + ": invisible to other rays");
+    checks.that(!lights.meet(0, ray, true), name + ": invisible to other rays");
     checks.that(sample->visibility == lamp.visibility && hit->visibility == lamp.visibility, name + ": visibility");
 }
 
@@ -119,8 +120,9 @@ void check_lamps_in_a_row(Checks &checks) {
     const Lamp near = lamp_above(LightType::point, 2, 0.2f), far = lamp_above(LightType::rectangle, 3, 1, 1);
     const Lights lights(scene, {far, near, lamp_above(LightType::point, 1, 0)}, {});
     const Ray ray{{}, near.transform.origin};
-    const std::optional<LampHit> hit = lights.meet(ray, false);
-    checks.that(hit && hit->source == 1, "the nearest lamp is met, and a point is not");
+    const std::optional<LampHit> hit = lights.meet(1, ray, false);
+    checks.that(hit && hit->source == 1, "a lamp that is asked for by its number is met");
+    checks.that(!lights.meet(2, ray, false), "a point is not met");
     double distance = 0;
     size_t count = 0;
     lights.meet_all(ray, false, [&](const LampHit &lamp) {

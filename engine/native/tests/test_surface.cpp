@@ -5,27 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "check.h"
-#include "surface.h"
+#include "surface_checks.h"
 
 using namespace photon_maps;
+using namespace photon_maps::test;
 
 namespace {
 
-constexpr Vec3 up{0, 0, 1}, white{1, 1, 1}, orange{0.8f, 0.5f, 0.2f};
 constexpr std::array<float, 3> middle{0.5f, 0.5f, 0.5f}, last{0.5f, 0.5f, 0.9999f};
 
 Vec3 towards(float cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 
-Shading seen(Vec3 outgoing, bool is_backfacing = false) {
-    Shading shading;
-    shading.outgoing = outgoing;
-    shading.normal = up;
-    shading.is_backfacing = is_backfacing;
-    return shading;
-}
-
-void check_color(test::Checks &checks, Vec3 found, Vec3 expected, float tolerance, const std::string &what) {
+void check_color(Checks &checks, Vec3 found, Vec3 expected, float tolerance, const std::string &what) {
     for (int axis = 0; axis < 3; ++axis)
         checks.near(double{found[axis]}, double{expected[axis]}, double{tolerance}, what);
 }
@@ -36,7 +27,7 @@ Vec3 mirrored(const Shading &shading) {
     return drawn && drawn->is_singular ? drawn->weight : Vec3{-1, -1, -1};
 }
 
-void check_lambert(test::Checks &checks) {
+void check_lambert(Checks &checks) {
     Shading shading = seen(towards(0.3f));
     add_diffuse(shading, orange, 0, up);
     const Vec3 incoming = towards(0.6f);
@@ -51,7 +42,7 @@ void check_lambert(test::Checks &checks) {
     checks.that(lobes_of(shading) == diffuse_reflection, "Lambert: its lobe");
 }
 
-void check_metals(test::Checks &checks) {
+void check_metals(Checks &checks) {
     const Vec3 tint{0.6f, 0.9f, 0.3f};
     Shading head_on = seen(up), grazing = seen(towards(1.0f / 7));
     add_metallic(head_on, white, orange, tint, 0, up, true);
@@ -73,7 +64,7 @@ void check_metals(test::Checks &checks) {
                 "conductor without extinction: half of the light is not reflected at Brewster's angle");
 }
 
-void check_smooth_glass(test::Checks &checks) {
+void check_smooth_glass(Checks &checks) {
     Shading glass = seen(towards(0.6f));
     add_glass(glass, white, white, 0, 1.5f, up, true);
     const auto refracted = sample(glass, all_lobes, last, Transport::flux);
@@ -110,7 +101,7 @@ void check_smooth_glass(test::Checks &checks) {
 }
 
 /// Bumps: the masking of GGX with alpha^2 = tan^2 / 8 of the angle between the normals.
-void check_bump_shadowing(test::Checks &checks) {
+void check_bump_shadowing(Checks &checks) {
     Shading shading = seen(towards(0.9f));
     const Vec3 normal = towards(0.8f), incoming = towards(0.6f);
     add_diffuse(shading, orange, 0, normal);
@@ -128,45 +119,23 @@ void check_bump_shadowing(test::Checks &checks) {
                 open * (2 / (1 + std::sqrt(1 + alpha_squared * tangent_squared))), 1e-5f, "bumps mask light");
 }
 
-Principled plain() {
-    return {.base_color = orange,
-            .metallic = 0,
-            .roughness = 0.5f,
-            .ior = 1.5f,
-            .alpha = 1,
-            .normal = up,
-            .diffuse_roughness = 0,
-            .specular_level = 0.5f,
-            .specular_tint = white,
-            .transmission = 0,
-            .coat = 0,
-            .coat_roughness = 0,
-            .coat_ior = 1.5f,
-            .coat_tint = white,
-            .coat_normal = up,
-            .sheen = 0,
-            .sheen_roughness = 0.5f,
-            .sheen_tint = white,
-            .emission = {}};
-}
-
 Shading add(const Principled &inputs, Vec3 outgoing = up) {
     Shading shading = seen(outgoing);
     add_principled(shading, white, inputs, true);
     return shading;
 }
 
-void check_principled(test::Checks &checks) {
-    Principled inputs = plain();
+void check_principled(Checks &checks) {
+    Principled inputs = plain_principled(orange, 0.5f, up);
     inputs.specular_level = 0;
     check_color(checks, albedo(add(inputs), all_lobes), orange, 1e-6f, "without a specular layer: Lambert");
-    inputs = plain();
+    inputs = plain_principled(orange, 0.5f, up);
     inputs.roughness = 0;
     check_color(checks, albedo(add(inputs), all_lobes), white * 0.04f + orange * 0.96f, 1e-4f,
                 "a smooth layer leaves 96 % head on");
     inputs.metallic = 1;
     check_color(checks, albedo(add(inputs), all_lobes), orange, 1e-5f, "metal");
-    inputs = plain();
+    inputs = plain_principled(orange, 0.5f, up);
     inputs.alpha = 0.25f;
     check_color(checks, add(inputs).transparency, white * 0.75f, 1e-6f, "alpha is transparency");
     inputs.emission = {1, 2, 4};
@@ -175,7 +144,7 @@ void check_principled(test::Checks &checks) {
     inputs.coat_tint = {0.5f, 1, 0};
     check_color(checks, add(inputs).emission, inputs.emission * inputs.coat_tint * 0.96f, 1e-3f,
                 "emission is under the coat");
-    inputs = plain();
+    inputs = plain_principled(orange, 0.5f, up);
     inputs.transmission = 1;
     inputs.roughness = 0;
     const auto refracted = sample(add(inputs), all_lobes, last, Transport::flux);
@@ -187,7 +156,7 @@ void check_principled(test::Checks &checks) {
 }
 
 /// No input makes a direction, weight or density that is not a number.
-void check_unfit_input(test::Checks &checks) {
+void check_unfit_input(Checks &checks) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     const std::vector<float> values{0, 1, -1, 2, 1e-6f, 1e30f, nan, infinity, -infinity};
     const std::vector<Vec3> normals{
@@ -196,7 +165,7 @@ void check_unfit_input(test::Checks &checks) {
         for (const bool is_backfacing : {false, true})
             for (const float value : values)
                 for (const Vec3 normal : normals) {
-                    Principled inputs = plain();
+                    Principled inputs = plain_principled(orange, 0.5f, up);
                     inputs.metallic = inputs.roughness = inputs.ior = inputs.transmission = inputs.coat = inputs.sheen =
                         inputs.coat_ior = inputs.sheen_roughness = inputs.diffuse_roughness = inputs.specular_level =
                             value;
@@ -243,7 +212,7 @@ void check_unfit_input(test::Checks &checks) {
 }  // namespace
 
 int main() {
-    test::Checks checks;
+    Checks checks;
     check_lambert(checks);
     check_metals(checks);
     check_smooth_glass(checks);

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The C interface to renders: makes them, runs them and reads them.
+#include <algorithm>
+
+#include "api.h"
+#include "convert.h"
+
+pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_settings *settings, pm_render **render) {
+    return pm::guarded([&] {
+        pm::require_handle(scene, "scene");
+        pm::require_handle(camera, "camera");
+        pm::require_handle(settings, "settings");
+        pm::require_handle(render, "render");
+        pm::validate(*camera);
+        pm::validate(*settings);
+        if (!scene->state->lights) scene->state->scene.view = pm::to_view(*camera);  // shaders see the first one's
+        scene->state->freeze();
+        *render =
+            std::make_unique<pm_render>(scene->state, pm::to_camera(*camera), pm::to_settings(*settings)).release();
+    });
+}
+
+pm_status pm_render_pass(pm_render *render, uint32_t index) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        render->render.render_pass(index);
+    });
+}
+
+pm_status pm_render_cancel(pm_render *render) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        render->render.cancel();
+    });
+}
+
+pm_status pm_render_read(const pm_render *render, uint32_t pass, float *pixels, uint64_t count) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require_handle(pixels, "pixels");
+        pm::require(pass < PM_PASS_COUNT, "unknown pass " + std::to_string(pass));
+        const auto buffer = static_cast<pm::Buffer>(pass);
+        const pm::Film &film = render->render.film();
+        if (!film.has(buffer)) throw pm::InvalidOperation("pass " + std::to_string(pass) + " was not asked for");
+        pm::require(count == film.size(buffer),
+                    "the pass has " + std::to_string(film.size(buffer)) + " floats, not " + std::to_string(count));
+        film.read(buffer, {pixels, count});
+    });
+}
+
+pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistics) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require_handle(statistics, "statistics");
+        pm::require(statistics->struct_size == sizeof(pm_statistics), "pm_statistics has another struct_size");
+        const pm::RenderStatistics &s = render->render.statistics();
+        const uint32_t passes = render->render.film().passes();
+        statistics->passes = passes;
+        statistics->photon_count = render->render.photon_count();
+        statistics->photons_emitted = s.photons_emitted;
+        statistics->photons_stored = s.photons_stored;
+        statistics->rays = s.rays;
+        statistics->memory_bytes = s.peak_memory_bytes;
+        statistics->radius_first = s.radius_first;
+        statistics->radius_last = s.radius_last;
+        for (size_t c = 0; c < 3; ++c) {
+            const double scale = passes > 0 ? 1.0 / passes : 0.0;
+            statistics->emitted[c] = s.balance.emitted[c] * scale;
+            statistics->absorbed[c] = s.balance.absorbed[c] * scale;
+            statistics->escaped[c] = s.balance.escaped[c] * scale;
+            statistics->cut[c] = s.balance.cut[c] * scale;
+        }
+        statistics->caustic_photons = s.caustic_photons;
+        statistics->caustic_radius_first = s.caustic_radius_first;
+        statistics->caustic_radius_last = s.caustic_radius_last;
+        statistics->caster_count = render->state->emission->caster_count();
+        statistics->reserved = 0;
+        statistics->seconds_trace = s.seconds_trace;
+        statistics->seconds_build = s.seconds_build;
+        statistics->seconds_gather = s.seconds_gather;
+    });
+}
+
+pm_status pm_render_photon_count(const pm_render *render, uint32_t kind, uint64_t *count) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require_handle(count, "count");
+        *count = render->photons(kind).size();
+    });
+}
+
+pm_status pm_render_photons(const pm_render *render, uint32_t kind, uint64_t first, uint64_t count,
+                            pm_photon *photons) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require(photons || count == 0, "photons is null");
+        const std::vector<pm::Photon> &source = render->photons(kind);
+        pm::require(first <= source.size() && count <= source.size() - first,
+                    "there are only " + std::to_string(source.size()) + " photons of this kind");
+        for (uint64_t i = 0; i < count; ++i) {
+            const pm::Photon &photon = source[first + i];
+            const pm::Vec3 d = pm::unpack_direction(photon.direction), n = pm::unpack_normal(photon.normal);
+            const pm::Vec3 p = photon.position, f = photon.flux;
+            photons[i] = {{p.x, p.y, p.z}, {d.x, d.y, d.z}, {n.x, n.y, n.z}, {f.x, f.y, f.z}, photon.bounce()};
+        }
+    });
+}
+
+pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t count, const float *points,
+                               const float *normals, float *irradiance) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require(count == 0 || (points && normals && irradiance), "an array of the points is null");
+        pm::validate_count(count, "points");
+        const pm::PhotonMap map = render->render.map_of(render->photons(kind));
+        for (uint64_t i = 0; i < count; ++i) {
+            const pm::Vec3 point = pm::vec3(points + 3 * i), normal = pm::vec3(normals + 3 * i);
+            pm::require(pm::is_finite(point) && pm::max_component(pm::abs(point)) <= pm::max_coordinate,
+                        "point " + std::to_string(i) + " is not finite or beyond 1e9");
+            pm::require(std::abs(pm::length(normal) - 1) < 1e-3f, "normal " + std::to_string(i) + " is no unit vector");
+            const pm::Vec3 e = render->render.irradiance(map, static_cast<pm_photon_kind>(kind), point, normal);
+            irradiance[3 * i] = e.x;
+            irradiance[3 * i + 1] = e.y;
+            irradiance[3 * i + 2] = e.z;
+        }
+    });
+}
+
+void pm_render_release(pm_render *render) { const std::unique_ptr<pm_render> owned(render); }
