@@ -28,18 +28,20 @@ export SOURCE_DATE_EPOCH := 315532800
 export PYTHONDONTWRITEBYTECODE := 1
 unexport PYTHONPATH PYTHONHOME
 
-# What is asked of `make demo`; by way of the environment, so that any file name will do.
-export BLEND OUT FRAME SIZE
+# What is asked of `make demo` and `make beside`; by way of the environment, so that any file name will do.
+export BLEND OUT FRAME SIZE CPU_SECONDS
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo package test test-native test-python test-campaign lint format bench clean
+.PHONY: help demo beside seed package test test-native test-python test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
+	@echo 'make beside    beside Cycles in the same CPU time: [BLEND=file.blend] [OUT=picture.png] [CPU_SECONDS=120]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
+	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
 	@echo 'make clean     remove build, dist and wheels; .venv stays'
@@ -55,6 +57,10 @@ help:
 
 .venv/test.stamp: requirements/test.txt .venv/build.stamp
 	$(PIP) install -r requirements/test.txt
+	@touch $@
+
+.venv/seed.stamp: requirements/seed.txt .venv/build.stamp
+	$(PIP) install -r requirements/seed.txt
 	@touch $@
 
 .venv/system.stamp: tools/system_libraries.sh .venv/build.stamp
@@ -93,6 +99,13 @@ $(ZIP): $(EXTENSION_SOURCES) $(NATIVE_WHEEL) $(EMBREEX_WHEELS) tools/package.py 
 
 demo: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/render.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --frame "$$FRAME" --size "$$SIZE"
+
+beside: $(ZIP) .venv/system.stamp
+	@$(PYTHON) tools/beside_cycles.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$CPU_SECONDS"
+
+# The scene, figures and tables of docs/seed.md; the path-traced reference is kept there from run to run.
+seed: build/native/stamp .venv/seed.stamp .venv/system.stamp
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.seed.reproduce  # it has threads of its own
 
 # --- Checks ---
 

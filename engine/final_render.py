@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 import bpy
 
 from . import last_render
+from .map_choice import explain_maps
 from .messages import Messages
 from .passes import PASSES, PassInfo
 from .properties import render_settings
-from .settings import Integrator, Stop
+from .settings import Stop
 from .summary import Summary, summarize
 
 if TYPE_CHECKING:
@@ -33,9 +34,9 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     except ImportError as error:
         _fail(engine, f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
         return
-    messages = Messages()
+    messages, maps = Messages(), ()
     try:
-        _render_layer(engine, depsgraph, messages)
+        maps = _render_layer(engine, depsgraph, messages)
     except NativeError as error:
         _fail(engine, f"The render stopped: {error}")
     except Exception as error:
@@ -43,7 +44,8 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         _fail(engine, f"The render stopped: {type(error).__name__}: {error}")
         raise
     finally:
-        last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, messages)
+        said = last_render.LastRender(tuple(messages), maps)
+        last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, said)
 
 
 def wanted_passes(view_layer: bpy.types.ViewLayer) -> list[PassInfo]:
@@ -56,7 +58,10 @@ def _fail(engine: bpy.types.RenderEngine, sentence: str) -> None:
     engine.report({"ERROR"}, sentence)
 
 
-def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, messages: Messages) -> None:
+def _render_layer(
+    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, messages: Messages
+) -> tuple[str, ...]:
+    """Render, and return which maps were built and why others were not."""
     from .export.scene import read_scene
     from .session import Session
 
@@ -64,7 +69,7 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
     camera = engine.camera_override
     if camera is None or camera.type != "CAMERA":  # Blender lets any object be the active camera
         _fail(engine, "The scene has no camera. Add one and make it the active camera.")
-        return
+        return ()
     passes = wanted_passes(depsgraph.view_layer_eval)
     for info in passes:
         engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
@@ -72,14 +77,14 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
     engine.update_stats("", "Reading the scene")
     scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages, engine.test_break)
     if scene is None:
-        return
+        return ()
     settings = render_settings(depsgraph.scene_eval)
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
         picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
         _step_until_done(engine, session, picture)
         statistics = session.statistics()
-        if statistics.passes > 0 and settings.integrator == Integrator.PHOTON_MAP and statistics.caster_count == 0:
-            engine.update_stats("", "No glass, metal or gloss focuses light here: no caustic photons were traced")
+        maps = explain_maps(settings, statistics)
+        engine.update_stats("", " ".join(maps))
         if statistics.passes == 0:
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
@@ -87,6 +92,7 @@ def _render_layer(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
     if bpy.app.background:
         sys.stdout.write(summary.line() + "\n")
         sys.stdout.flush()
+    return maps
 
 
 class _Picture:

@@ -1,29 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The messages of each view layer's last render, for the panel.
+"""What is to be said of each view layer's last render, for the panels.
 
-They are kept beside Blender's data, not in it: a render runs in a thread of its own, which must not write
-properties, and they should neither be saved with the file nor be undone.
+It is kept beside Blender's data, not in it: a render runs in a thread of its own, which must not write
+properties, and it should neither be saved with the file nor be undone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from dataclasses import dataclass
 
 from .messages import Message
 
-_messages: dict[tuple[int, str], tuple[Message, ...]] = {}
+
+@dataclass(frozen=True)
+class LastRender:
+    """What the panels show of a render."""
+
+    messages: tuple[Message, ...] = ()
+    maps: tuple[str, ...] = ()  #: which photon maps were built and why others were not, a sentence each
 
 
-def remember(scene_uid: int, view_layer: str, messages: Iterable[Message]) -> None:
-    """Keep the messages of a render, in place of those of the one before."""
-    _messages[scene_uid, view_layer] = tuple(messages)
+_renders: dict[tuple[int, str], LastRender] = {}
 
 
-def recall(scene_uid: int, view_layer: str) -> tuple[Message, ...]:
-    """Return the messages of the view layer's last render; none if it has not been rendered."""
-    return _messages.get((scene_uid, view_layer), ())
+def remember(scene_uid: int, view_layer: str, render: LastRender) -> None:
+    """Keep what is to be said of a render, in place of the one before."""
+    _renders[scene_uid, view_layer] = render
+
+
+def recall(scene_uid: int, view_layer: str) -> LastRender:
+    """Return what is to be said of the view layer's last render; nothing if it has not been rendered."""
+    return _renders.get((scene_uid, view_layer), LastRender())
 
 
 def forget() -> None:
-    """Drop all messages."""
-    _messages.clear()
+    """Drop all of it."""
+    _renders.clear()

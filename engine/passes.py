@@ -21,6 +21,8 @@ class Pass(enum.IntEnum):
     CAUSTIC = 8
     BACKGROUND = 9
     PHOTON_DENSITY = 10
+    SPECULAR = 11
+    SOFT_INDIRECT = 12
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ PASSES = (
     PassInfo(Pass.EMISSION, "Emission", "RGB", "COLOR", "use_pass_emit"),
     PassInfo(Pass.DIRECT, "Direct", "RGB", "COLOR", "photon_maps.use_pass_direct"),
     PassInfo(Pass.INDIRECT, "Indirect", "RGB", "COLOR", "photon_maps.use_pass_indirect"),
+    PassInfo(Pass.SPECULAR, "Specular", "RGB", "COLOR", "photon_maps.use_pass_specular"),
+    PassInfo(Pass.SOFT_INDIRECT, "Soft Indirect", "RGB", "COLOR", "photon_maps.use_pass_soft_indirect"),
     PassInfo(Pass.CAUSTIC, "Caustic", "RGB", "COLOR", "photon_maps.use_pass_caustic"),
     PassInfo(Pass.BACKGROUND, "Environment", "RGB", "COLOR", "use_pass_environment"),
     PassInfo(Pass.PHOTON_DENSITY, "Photon Density", "X", "VALUE", "photon_maps.use_pass_photon_density"),

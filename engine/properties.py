@@ -8,7 +8,7 @@ import enum
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-from .settings import Filter, Integrator, PixelFilter, RenderSettings, Stop
+from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
 
 _DEFAULTS = RenderSettings()
 
@@ -29,6 +29,33 @@ INTEGRATORS = _items(
             "Path Tracing",
             "Paths from the camera only, without photons. Slow and noisy, but "
             "exact on average: the reference to compare with",
+        ),
+        Integrator.REGULAR_SHADING: (
+            "Regular Shading",
+            "The lights alone, at what is seen directly, in mirrors and through glass; no light from surface to "
+            "surface and no caustics. Fastest, and too dark wherever light arrives by way of other surfaces",
+        ),
+    },
+)
+ESTIMATES = _items(
+    Estimate,
+    {
+        Estimate.RADIUS: ("Radius", "Those within a radius: fast, and exact in the end as it shrinks"),
+        Estimate.NEAREST: (
+            "Nearest",
+            "The nearest ones, as many as Nearest Photons says, within the radius at most. Sharper where photons are "
+            "dense and smoother where they are sparse, but slower",
+        ),
+    },
+)
+BRDF_DIRECTIONS = _items(
+    BrdfDirection,
+    {
+        BrdfDirection.PER_PHOTON: ("Each Photon", "Exact for all surfaces; slower on those that are not matte"),
+        BrdfDirection.MEAN: (
+            "Mean Direction",
+            "All photons around a point count as one from their mean direction. Faster on rough diffuse and velvet "
+            "surfaces and slightly wrong there; the same on matte ones",
         ),
     },
 )
@@ -90,7 +117,40 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     estimate: EnumProperty(
         name="Estimate",
         description="Which photons are counted around a point",
-        items=[("RADIUS", "Radius", "Those within a radius: fast, and exact in the end as it shrinks", "NONE", 0)],
+        items=ESTIMATES,
+        default=_DEFAULTS.estimate.name,
+    )
+    nearest_count: IntProperty(
+        name="Nearest Photons",
+        description="How many photons the nearest estimate counts. More are smoother, more blurred and slower",
+        default=_DEFAULTS.nearest_count,
+        min=1,
+        soft_max=1000,
+        max=1_000_000,
+    )
+    brdf_direction: EnumProperty(
+        name="Scatter By",
+        description="By which direction a surface scatters the light of photons",
+        items=BRDF_DIRECTIONS,
+        default=_DEFAULTS.brdf_direction.name,
+    )
+    use_final_gather: BoolProperty(
+        name="Final Gather",
+        description="Look for indirect light by rays from what is seen, and ask the photons where those end: grain "
+        "in place of blotches. Slower to the same error; pays where blotches disturb",
+        default=_DEFAULTS.use_final_gather,
+    )
+    use_shadow_photons: BoolProperty(
+        name="Shadow Photons",
+        description="Spare shadow rays where only lit or only shadow photons of a light lie. Saves time where shadow "
+        "rays are dear, and may lose shadows thinner than the distance of photons",
+        default=_DEFAULTS.use_shadow_photons,
+    )
+    use_photon_guiding: BoolProperty(
+        name="Photon Guiding",
+        description="Send the rays of path tracing and final gather to where photons came from. Each ray costs more; "
+        "pays where light arrives by way of a small part of what a surface sees, such as a gap",
+        default=_DEFAULTS.use_photon_guiding,
     )
     radius: FloatProperty(
         name="Radius",
@@ -210,7 +270,17 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
     )
     use_pass_indirect: BoolProperty(
         name="Indirect",
-        description="Light that was scattered more than once, caustics left out. Costs memory, hardly any time",
+        description="Light that was scattered more than once, caustics left out: Specular and Soft Indirect together. "
+        "Costs memory, hardly any time",
+    )
+    use_pass_specular: BoolProperty(
+        name="Specular",
+        description="Of the indirect light what is seen in mirrors, glossy surfaces and glass. Costs memory, hardly "
+        "any time",
+    )
+    use_pass_soft_indirect: BoolProperty(
+        name="Soft Indirect",
+        description="Of the indirect light what rough surfaces show. Costs memory, hardly any time",
     )
     use_pass_caustic: BoolProperty(
         name="Caustic",
@@ -232,6 +302,12 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
         else {
             "photon_count": user.photon_count,
             "radius": user.radius,
+            "estimate": Estimate[user.estimate],
+            "nearest_count": user.nearest_count,
+            "brdf_direction": BrdfDirection[user.brdf_direction],
+            "use_final_gather": user.use_final_gather,
+            "use_shadow_photons": user.use_shadow_photons,
+            "use_photon_guiding": user.use_photon_guiding,
             "filter": Filter[user.filter],
             "cone_k": user.cone_k,
         }

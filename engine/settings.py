@@ -15,6 +15,21 @@ class Integrator(enum.IntEnum):
 
     PHOTON_MAP = 0
     PATH_TRACING = 1
+    REGULAR_SHADING = 2
+
+
+class Estimate(enum.IntEnum):
+    """Which photons are counted around a point, numbered as in photon_maps.h and in saved files."""
+
+    RADIUS = 0
+    NEAREST = 1
+
+
+class BrdfDirection(enum.IntEnum):
+    """By which direction surfaces scatter photons, numbered as in photon_maps.h and in saved files."""
+
+    PER_PHOTON = 0
+    MEAN = 1
 
 
 class Filter(enum.IntEnum):
@@ -48,8 +63,14 @@ class RenderSettings:
     integrator: Integrator = Integrator.PHOTON_MAP
     photon_count: int = 0  #: emitted per pass; 0: chosen from the pixels
     radius: float = 0.0  #: of the first pass, scene units; 0: chosen from the photons' density
+    estimate: Estimate = Estimate.RADIUS
+    nearest_count: int = 100  #: photons of the nearest estimate
     filter: Filter = Filter.EPANECHNIKOV
     cone_k: float = 1.0
+    brdf_direction: BrdfDirection = BrdfDirection.PER_PHOTON
+    use_final_gather: bool = False
+    use_shadow_photons: bool = False
+    use_photon_guiding: bool = False
     max_bounces: int = 32
     use_caustics: bool = True
     use_indirect: bool = True
@@ -63,3 +84,4 @@ class RenderSettings:
     pixel_filter_width: float = 1.5
     film_transparent: bool = False
     threads: int = 0  #: 0: one for every core
+    keep_photons: bool = False  #: so that they can be read after a pass; costs memory

@@ -7,6 +7,7 @@ import json
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
+from .map_choice import maps_built
 from .messages import Messages
 
 if TYPE_CHECKING:
@@ -62,6 +63,6 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         radius_last=statistics.radius_last,
         peak_memory_bytes=statistics.memory_bytes,
         error_estimate=None,
-        maps=["global"] * (statistics.radius_first > 0) + ["caustic"] * (statistics.caustic_radius_first > 0),
+        maps=maps_built(statistics),
         messages=[str(message) for message in messages],
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A terrace in the sun with one of everything: textures, glass, metals, leaves, instances, a sky of an image."""
+"""A terrace in the evening sun with one of everything: textures, glass, metals, leaves, instances, an image's sky."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from .demo_parts import ball, camera, lathe, link, node_material, rounded, smooth, table, use_nodes
+from .demo_parts import ball, camera, lathe, link, node_material, rounded, smooth, table, towards, use_nodes
 
 #: Rows and columns of the sky's image.
 SKY_SIZE = (256, 512)
@@ -17,7 +17,7 @@ PEBBLES = 160
 
 
 def everything() -> bpy.types.Scene:
-    """Build a tiled terrace with a vase, balls of glass, metal, lacquer and velvet, a lantern, pebbles and a plant."""
+    """Build a tiled terrace with a vase, balls of glass, metal, lacquer and velvet, a ring, a lantern, a plant."""
     scene = bpy.context.scene
     scene.name = "Everything"
     link(scene, "Terrace", _with_uv(table(2.2)), _tiles())
@@ -29,10 +29,13 @@ def everything() -> bpy.types.Scene:
     _plant(scene, (-0.62, 0.42, 0.42))
     _pebbles(scene)
     _sky(scene)
-    view = camera(scene, (0.25, -2.6, 1.0), (0.0, 0.1, 0.33), 58.0)
-    view.dof.use_dof, view.dof.focus_distance, view.dof.aperture_fstop = True, 2.55, 1.2
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle, sun.color = 6.0, math.radians(0.6), (1.0, 0.82, 0.6)
+    link(scene, "Sun", sun).matrix_world = towards((-1.0, -0.3, 0.75), (0.0, 0.0, 0.0))
+    view = camera(scene, (0.3, -2.65, 1.45), (0.06, -0.09, 0.2), 54.0)
+    view.dof.use_dof, view.dof.focus_distance, view.dof.aperture_fstop = True, 2.5, 1.2
     scene.render.engine = "PHOTON_MAPS"
-    scene.render.resolution_x, scene.render.resolution_y = 800, 500
+    scene.render.resolution_x, scene.render.resolution_y = 640, 400
     scene.photon_maps.passes = 48
     return scene
 
@@ -85,7 +88,7 @@ def _tiles() -> bpy.types.Material:
     material, tree, shader, texture = _textured("Tiles", _image("Tiles", pixels), Roughness=0.45)
     checker, mix = tree.nodes.new("ShaderNodeTexChecker"), tree.nodes.new("ShaderNodeMix")
     checker.inputs["Scale"].default_value = size / tile
-    checker.inputs["Color1"].default_value, checker.inputs["Color2"].default_value = (1, 1, 1, 1), (0.45, 0.5, 0.55, 1)
+    checker.inputs["Color1"].default_value, checker.inputs["Color2"].default_value = (1, 1, 1, 1), (0.55, 0.6, 0.65, 1)
     mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
     mix.inputs["Factor"].default_value = 1.0
     coordinates, bump = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeBump")
@@ -105,7 +108,7 @@ def _tiles() -> bpy.types.Material:
 
 
 def _balls(scene: bpy.types.Scene) -> None:
-    """Glass, copper, lacquer and velvet."""
+    """Glass, copper, lacquer and velvet, and a ring of gold."""
     principled = "BsdfPrincipled"
     made = {
         "Glass": (0.20, (0.02, -0.38), node_material("Glass", "BsdfGlass", (0.9, 1.0, 0.95), Roughness=0.0, IOR=1.5)),
@@ -124,10 +127,13 @@ def _balls(scene: bpy.types.Scene) -> None:
             (-0.46, -0.30),
             node_material("Velvet", principled, (0.08, 0.06, 0.3), Roughness=0.9, Sheen_Weight=1.0),
         ),
-        "Ice": (0.13, (0.52, -0.34), node_material("Ice", "BsdfGlass", (0.7, 0.9, 1.0), Roughness=0.25, IOR=1.31)),
+        "Ice": (0.13, (0.66, -0.24), node_material("Ice", "BsdfGlass", (0.7, 0.9, 1.0), Roughness=0.25, IOR=1.31)),
     }
     for name, (radius, (x, y), material) in made.items():
         link(scene, name, ball(name, radius, 96), material).location = (x, y, radius)
+    gold = node_material("Gold", "BsdfMetallic", (1.0, 0.75, 0.35), Roughness=0.0)
+    section = [(0.135, 0.0), (0.145, 0.0), (0.145, 0.08), (0.135, 0.08), (0.135, 0.0)]
+    link(scene, "Ring", lathe("Ring", section, 256), gold).location = (-0.38, -0.66, 0.0)
 
 
 def _vase(scene: bpy.types.Scene, place: tuple[float, float, float]) -> None:
@@ -194,15 +200,15 @@ def _pebbles(scene: bpy.types.Scene) -> None:
     stone.materials.append(node_material("Pebble", "BsdfPrincipled", (0.32, 0.30, 0.28), Roughness=0.3))
     random = np.random.default_rng(4)
     for index in range(PEBBLES):
-        angle, distance = random.uniform(0, 2 * math.pi), random.uniform(0.85, 1.7)
+        angle, distance = random.uniform(0, 2 * math.pi), random.uniform(1.05, 1.9)
         size = random.uniform(0.012, 0.035, 3) * (1.0, 1.0, 0.6)
-        matrix = Matrix.Translation((distance * math.cos(angle), 0.7 * distance * math.sin(angle) + 0.1, size[2]))
+        matrix = Matrix.Translation((distance * math.cos(angle), 0.85 * distance * math.sin(angle) + 0.1, size[2]))
         matrix = matrix @ Matrix.Rotation(angle * 7, 4, "Z") @ Matrix.Diagonal((*size, 1.0))
         link(scene, f"Pebble {index}", stone).matrix_world = matrix
 
 
 def _sky(scene: bpy.types.Scene) -> None:
-    """A float image: a blue sky with haze and a small bright sun, and brown ground."""
+    """A float image: a blue sky with haze, brighter towards the sun, and brown ground."""
     height, width = SKY_SIZE
     rows, columns = np.indices(SKY_SIZE)
     latitude = ((rows + 0.5) / height - 0.5) * math.pi
@@ -210,10 +216,10 @@ def _sky(scene: bpy.types.Scene) -> None:
     haze = np.exp(-4.0 * np.abs(latitude))[..., None]
     colors = haze * (0.75, 0.72, 0.68) + (1 - haze) * (0.16, 0.33, 0.75)
     colors = np.where(latitude[..., None] < 0, (0.14, 0.12, 0.10), colors)
-    sun_latitude, sun_longitude = 0.72, 2.2
+    sun_latitude, sun_longitude = 0.62, 2.85  # the image runs clockwise
     cosine = np.sin(latitude) * math.sin(sun_latitude)
     cosine += np.cos(latitude) * math.cos(sun_latitude) * np.cos(longitude - sun_longitude)
-    colors = colors + np.where(cosine > math.cos(0.022), 1500.0, 0.0)[..., None] * (1.0, 0.85, 0.62)
+    colors = 0.4 * (colors + np.exp(6.0 * (cosine - 1.0))[..., None] * (1.5, 1.1, 0.7))
     pixels = np.concatenate([colors, np.ones((height, width, 1))], -1)
     world = bpy.data.worlds.new("Sky")
     tree = use_nodes(world)

@@ -215,8 +215,13 @@ def relative_mean_square_error(picture: np.ndarray, reference: np.ndarray) -> fl
     return float(np.sort(error)[: -(len(error) // 1000)].mean())
 
 
-def bias(picture: np.ndarray, reference: np.ndarray) -> float:
-    """Return mean(x - r) / mean(r) without the lamp and its glints: the brightest 0.5 % of the reference."""
+def without_lamp(reference: np.ndarray) -> np.ndarray:
+    """Return which pixels (H, W) are neither lamp nor its glints: the brightest 0.5 % of the reference."""
     brightest = reference.max(-1)
-    kept = brightest < min(np.quantile(brightest, 0.995), 0.5 * brightest.max())
+    return brightest < min(np.quantile(brightest, 0.995), 0.5 * brightest.max())
+
+
+def bias(picture: np.ndarray, reference: np.ndarray) -> float:
+    """Return mean(x - r) / mean(r) without the lamp and its glints."""
+    kept = without_lamp(reference)
     return float((picture[kept] - reference[kept]).mean() / reference[kept].mean())

@@ -154,5 +154,5 @@ class Picture:
 
 
 def box_filtered(**fields: object) -> RenderSettings:
-    """Return settings with a box pixel filter of one pixel, so that pixels are means over their own area."""
-    return RenderSettings(pixel_filter=PixelFilter.BOX, pixel_filter_width=1.0, **fields)
+    """Return settings that keep the photons, with a box pixel filter of one pixel: pixels are means over their area."""
+    return RenderSettings(pixel_filter=PixelFilter.BOX, pixel_filter_width=1.0, keep_photons=True, **fields)

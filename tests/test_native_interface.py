@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from photon_maps_native import (
     Device,
+    Image,
     Instances,
     LightType,
     Material,
@@ -244,6 +245,31 @@ def test_a_buffer_must_have_been_asked_for_and_fit() -> None:
         picture.pixels(Pass.DEPTH)
     with pytest.raises(NativeError, match="floats"):
         picture.render.read(Pass.COMBINED, 3)
+
+
+def test_photons_are_kept_if_asked_for_and_cost_memory() -> None:
+    kept = Picture(plain(), RenderSettings(keep_photons=True)).run(1)
+    dropped = Picture(plain(), RenderSettings()).run(1)
+    np.testing.assert_array_equal(kept.pixels(), dropped.pixels())
+    assert len(kept.render.photons(0).flux) > 0
+    more, less = kept.render.statistics(), dropped.render.statistics()
+    direct_photons = len(kept.render.photons(0).flux)
+    assert more.photons_stored - less.photons_stored == direct_photons
+    assert more.memory_bytes - less.memory_bytes == 32 * direct_photons
+    with pytest.raises(NativeError, match="keep_photons") as caught:
+        dropped.render.photons(0)
+    assert caught.value.status == Status.INVALID_OPERATION
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.float16, np.float32])
+def test_images_are_held_in_their_native_depth(dtype: type) -> None:
+    decode = np.linspace(0, 1, 256).repeat(3).reshape(256, 3).astype(np.float32) if dtype == np.uint8 else None
+    image = Image(np.zeros((64, 128, 4), dtype), decode)
+    without, data = Picture(plain(), RenderSettings()).run(1), plain()
+    data.images.append(image)
+    held = Picture(data, RenderSettings()).run(1).render.statistics().memory_bytes
+    beside = 4096  # the table that decodes bytes, and what describes the image
+    assert image.pixels.nbytes <= held - without.render.statistics().memory_bytes <= image.pixels.nbytes + beside
 
 
 def test_a_missing_or_foreign_embree_is_one_sentence(tmp_path: Path) -> None:

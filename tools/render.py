@@ -165,6 +165,16 @@ def press_f12(scene, picture: Path) -> list[str]:
 
     A render that failed ends for Blender like any other: the engine's summary tells the two apart.
     """
+    summaries = write_still(scene, picture)
+    if len(summaries) < summaries_expected(scene) or any(summary["passes"] < 1 for summary in summaries):
+        raise RenderFailure(f"scene {scene.name!r} was not rendered; see the lines above.")
+    if not picture.is_file():
+        raise RenderFailure(f"scene {scene.name!r} was rendered, but Blender wrote no picture; see the lines above.")
+    return [str(message) for summary in summaries for message in summary["messages"]]
+
+
+def write_still(scene, picture: Path) -> list[dict]:
+    """Have Blender render the scene to a file with the scene's engine, and return the summaries of ours."""
     import bpy
 
     settings = scene.render
@@ -183,12 +193,7 @@ def press_f12(scene, picture: Path) -> list[str]:
     except RuntimeError as error:
         advice = " Add a camera, or make one active." if scene.camera is None else ""
         raise RenderFailure(f"scene {scene.name!r} was not rendered: {one_line(error)}.{advice}") from error
-    summaries = output.summaries()
-    if len(summaries) < summaries_expected(scene) or any(summary["passes"] < 1 for summary in summaries):
-        raise RenderFailure(f"scene {scene.name!r} was not rendered; see the lines above.")
-    if not picture.is_file():
-        raise RenderFailure(f"scene {scene.name!r} was rendered, but Blender wrote no picture; see the lines above.")
-    return [str(message) for summary in summaries for message in summary["messages"]]
+    return output.summaries()
 
 
 def summaries_expected(scene) -> int:

@@ -71,10 +71,40 @@ class PHOTON_MAPS_PT_photons(_Panel, bpy.types.Panel):
         by_hand.active = not settings.use_auto
         by_hand.prop(settings, "photon_count")
         by_hand.prop(settings, "radius")
+        by_hand.prop(settings, "estimate")
+        nearest = by_hand.column()
+        nearest.active = settings.estimate == "NEAREST"
+        nearest.prop(settings, "nearest_count")
         by_hand.prop(settings, "filter")
         cone = by_hand.column()
         cone.active = settings.filter == "CONE"
         cone.prop(settings, "cone_k")
+        by_hand.prop(settings, "brdf_direction")
+        for sentence in last_render.recall(context.scene.session_uid, context.view_layer.name).maps:
+            for line in textwrap.wrap(sentence, _line_length(context)):
+                column.label(text=line)
+
+
+class PHOTON_MAPS_PT_parts(_Panel, bpy.types.Panel):
+    bl_label = "Parts of the Method"
+    bl_context = "render"
+    bl_parent_id = "PHOTON_MAPS_PT_method"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.photon_maps
+        column = self.column()
+        column.active = not settings.use_auto
+        with_photons = settings.integrator == "PHOTON_MAP"
+        gather = column.column()
+        gather.active = with_photons and settings.use_indirect
+        gather.prop(settings, "use_final_gather")
+        shadows = column.column()
+        shadows.active = with_photons
+        shadows.prop(settings, "use_shadow_photons")
+        guiding = column.column()
+        guiding.active = settings.integrator == "PATH_TRACING" or (gather.active and settings.use_final_gather)
+        guiding.prop(settings, "use_photon_guiding")
 
 
 class PHOTON_MAPS_PT_stop(_Panel, bpy.types.Panel):
@@ -122,7 +152,7 @@ class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context: bpy.types.Context) -> None:
-        messages = last_render.recall(context.scene.session_uid, context.view_layer.name)
+        messages = last_render.recall(context.scene.session_uid, context.view_layer.name).messages
         column = self.layout.column()
         if not messages:
             column.label(text="None.")
@@ -136,7 +166,7 @@ class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
 
 def _line_length(context: bpy.types.Context) -> int:
     """Return how many letters fit the region's width; Blender's labels do not wrap."""
-    letter_width = 7.5 * context.preferences.system.ui_scale
+    letter_width = 7.5 * (context.preferences.system.ui_scale or 1.0)  # 0 without a window
     region_width = context.region.width if context.region else 300
     return max(20, int((region_width - 60) / letter_width))
 
@@ -242,6 +272,7 @@ class PHOTON_MAPS_PT_world_visibility(_Panel, bpy.types.Panel):
 CLASSES = (
     PHOTON_MAPS_PT_method,
     PHOTON_MAPS_PT_photons,
+    PHOTON_MAPS_PT_parts,
     PHOTON_MAPS_PT_stop,
     PHOTON_MAPS_PT_film,
     PHOTON_MAPS_PT_performance,

@@ -46,7 +46,7 @@ def test_the_still_life_is_rendered_without_a_message_and_shines_by_its_caustics
 def test_everything_is_rendered_without_a_message(scene, extension):
     from bl_ext.user_default.photon_maps.operators.demo_everything import everything
 
-    made = small(everything(), 12)
+    made = small(everything(), 15)
     passes, summary = render_with_summary(made)
     assert summary["messages"] == []
     picture = passes["Combined"][..., :3]

@@ -159,11 +159,26 @@ def test_messages_reach_the_panel(corner, extension):
 
     link(corner, "Smoke", bpy.data.volumes.new("Smoke"))
     lines = messages(corner)
-    kept = last_render.recall(corner.session_uid, corner.view_layers[0].name)
+    kept = last_render.recall(corner.session_uid, corner.view_layers[0].name).messages
     assert [str(message) for message in kept] == lines and any(line.startswith("Smoke") for line in lines)
     bpy.data.objects.remove(bpy.data.objects["Smoke"])
     assert messages(corner) == []
-    assert last_render.recall(corner.session_uid, corner.view_layers[0].name) == ()
+    assert last_render.recall(corner.session_uid, corner.view_layers[0].name).messages == ()
+
+
+def test_the_summary_and_the_panel_say_which_maps_were_built(corner, extension, monkeypatch):
+    from bl_ext.user_default.photon_maps.engine import final_render, last_render
+
+    said = []
+    explain = final_render.explain_maps
+    monkeypatch.setattr(final_render, "explain_maps", lambda *given: said.append(explain(*given)) or said[-1])
+    assert render_with_summary(corner)[1]["maps"] == ["global"]
+    glass = bpy.data.materials["Wall"].node_tree
+    shader = glass.nodes.new("ShaderNodeBsdfGlossy")
+    glass.links.new(shader.outputs[0], glass.get_output_node("ALL").inputs["Surface"])
+    assert render_with_summary(corner)[1]["maps"] == ["global", "caustic"]
+    assert [lines[1].split(":")[0] for lines in said] == ["No caustic map", "Caustic map"]
+    assert last_render.recall(corner.session_uid, corner.view_layers[0].name).maps == said[-1]
 
 
 def test_an_animation_moves(corner, tmp_path):

@@ -11,6 +11,8 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
+from tests.blender.scenes import render
+
 MANIFEST = tomllib.loads((Path(__file__).resolve().parents[2] / "blender_manifest.toml").read_text())
 
 
@@ -151,6 +153,13 @@ def test_panels_show_what_there_is(scene, extension):
     shown = drawn(extension, "PHOTON_MAPS_PT_passes").properties
     assert len(shown) == len(set(shown)) and {"use_pass_z", "use_pass_direct", "use_pass_denoising"} <= set(shown)
     assert "radius" in drawn(extension, "PHOTON_MAPS_PT_photons").properties
+
+
+def test_the_panel_says_which_maps_the_last_render_built(corner, extension):
+    assert not drawn(extension, "PHOTON_MAPS_PT_photons").texts
+    render(corner)
+    texts = " ".join(drawn(extension, "PHOTON_MAPS_PT_photons").texts)
+    assert "Global map: radius" in texts and "No caustic map: nothing focuses light" in texts
 
 
 def test_panels_of_cameras_objects_and_worlds(scene, extension):

@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 2 };
+enum { PM_ABI_VERSION = 3 };
 
 typedef enum pm_status {
     PM_OK = 0,
@@ -39,7 +39,20 @@ typedef enum pm_status {
     PM_INTERNAL_ERROR = 6
 } pm_status;
 
-typedef enum pm_integrator { PM_PHOTON_MAP = 0, PM_PATH_TRACING = 1 } pm_integrator;
+typedef enum pm_integrator {
+    PM_PHOTON_MAP = 0,
+    PM_PATH_TRACING = 1,
+    PM_REGULAR_SHADING = 2 /* the lights at what is seen directly, in mirrors and through glass; nothing else */
+} pm_integrator;
+
+/* Which photons are counted around a point. */
+typedef enum pm_estimate {
+    PM_ESTIMATE_RADIUS = 0,
+    PM_ESTIMATE_NEAREST = 1 /* nearest_count of them, or those within the radius where they are fewer */
+} pm_estimate;
+
+/* By which direction a surface that is not Lambertian scatters photons. */
+typedef enum pm_brdf_direction { PM_BRDF_PER_PHOTON = 0, PM_BRDF_MEAN = 1 } pm_brdf_direction;
 
 typedef enum pm_filter {
     PM_FILTER_NONE = 0,
@@ -64,7 +77,9 @@ typedef enum pm_pass {
         8, /* 3 channels: specular scatterings, then a diffuse one, and specular ones to the eye (LS+DS*E) */
     PM_PASS_BACKGROUND = 9,      /* 3 channels: light of the world seen directly */
     PM_PASS_PHOTON_DENSITY = 10, /* 1 channel: photons per unit of area that the estimates of the pixel counted */
-    PM_PASS_COUNT = 11
+    PM_PASS_SPECULAR = 11,       /* 3 channels: of PM_PASS_INDIRECT what reaches the eye by a specular scattering */
+    PM_PASS_SOFT_INDIRECT = 12,  /* 3 channels: the rest of PM_PASS_INDIRECT */
+    PM_PASS_COUNT = 13
 } pm_pass;
 
 /* Which photons: by the bounces before the hit they record. */
@@ -93,8 +108,15 @@ typedef struct pm_settings {
     uint32_t pixel_filter;    /* pm_pixel_filter */
     float pixel_filter_width; /* full width in pixels */
     uint32_t film_transparent;
-    uint32_t threads; /* 0: one for every core */
-    uint32_t passes;  /* bit 1 << pm_pass for each pass that will be read */
+    uint32_t threads;            /* 0: one for every core */
+    uint32_t passes;             /* bit 1 << pm_pass for each pass that will be read */
+    uint32_t estimate;           /* pm_estimate */
+    uint32_t nearest_count;      /* PM_ESTIMATE_NEAREST: >= 1 */
+    uint32_t brdf_direction;     /* pm_brdf_direction */
+    uint32_t use_final_gather;   /* 1: indirect light by rays from what is seen; photons are asked where those end */
+    uint32_t use_shadow_photons; /* 1: no shadow rays where only lit, or only shadow photons of a light lie */
+    uint32_t use_photon_guiding; /* 1: diffuse rays go where photons came from */
+    uint32_t keep_photons; /* 1: the last pass's photons can be asked for, and light straight from lights is stored */
 } pm_settings;
 
 typedef struct pm_statistics {
@@ -112,7 +134,9 @@ typedef struct pm_statistics {
     float caustic_radius_last;
     uint32_t caster_count; /* objects that can focus light; 0: no caustic photon is traced */
     uint32_t reserved;
-    double emitted[3]; /* W, mean over the passes: emitted = absorbed + escaped + cut */
+    uint64_t shadow_rays;        /* traced by the camera's paths */
+    uint64_t spared_shadow_rays; /* whose answer shadow photons knew */
+    double emitted[3];           /* W, mean over the passes: emitted = absorbed + escaped + cut */
     double absorbed[3];
     double escaped[3];
     double cut[3];        /* carried by photons that reached max_bounces */
@@ -174,13 +198,13 @@ PM_API pm_status pm_render_cancel(pm_render *render);
 /* Gets a pass (pm_pass) as rows from the bottom, width x height x channels floats; count is their number. */
 PM_API pm_status pm_render_read(const pm_render *render, uint32_t pass, float *pixels, uint64_t count);
 PM_API pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistics);
-/* Counts the photons of a kind (pm_photon_kind) that the last pass stored. */
+/* Counts the photons of a kind (pm_photon_kind) that the last pass stored; needs keep_photons, as the next two do. */
 PM_API pm_status pm_render_photon_count(const pm_render *render, uint32_t kind, uint64_t *count);
 /* Gets `count` photons of a kind from number `first` on, in the order of their emission. */
 PM_API pm_status pm_render_photons(const pm_render *render, uint32_t kind, uint64_t first, uint64_t count,
                                    pm_photon *photons);
 /* Estimates the irradiance (W/m2) that photons of a kind of the last pass bring to `count` points with unit
- * normals, at the radius and filter of that pass (the seed report's equation 4). */
+ * normals, at the radius, estimate and filter of that pass (the seed report's equation 4). */
 PM_API pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t count, const float *points,
                                       const float *normals, float *irradiance);
 /* Releases a render; null is ignored. */

@@ -240,6 +240,8 @@ class Statistics:
     caustic_radius_first: float
     caustic_radius_last: float
     caster_count: int
+    shadow_rays: int  #: traced by the camera's paths
+    spared_shadow_rays: int  #: whose answer shadow photons knew
     emitted: Color
     absorbed: Color
     escaped: Color

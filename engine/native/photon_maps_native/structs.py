@@ -177,6 +177,13 @@ class PmSettings(SizedStructure):
         ("film_transparent", c_uint32),
         ("threads", c_uint32),
         ("passes", c_uint32),
+        ("estimate", c_uint32),
+        ("nearest_count", c_uint32),
+        ("brdf_direction", c_uint32),
+        ("use_final_gather", c_uint32),
+        ("use_shadow_photons", c_uint32),
+        ("use_photon_guiding", c_uint32),
+        ("keep_photons", c_uint32),
     ]
 
 
@@ -198,6 +205,8 @@ class PmStatistics(SizedStructure):
         ("caustic_radius_last", c_float),
         ("caster_count", c_uint32),
         ("reserved", c_uint32),
+        ("shadow_rays", c_uint64),
+        ("spared_shadow_rays", c_uint64),
         ("emitted", c_double * 3),
         ("absorbed", c_double * 3),
         ("escaped", c_double * 3),

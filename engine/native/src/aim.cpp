@@ -28,30 +28,32 @@ void DirectionAim::add(const std::optional<Cone> &cone, float share) {
     if (!(share > 0)) return;
     total_ += share;
     if (!cone || cone->one_minus_cosine > widest_) return;
-    cones_[count_] = *cone;
-    shares_[count_++] = share;
+    targets_.emplace_back() = {*cone, share};
 }
 
 std::optional<Vec3> DirectionAim::sample(float choice, float u, float v) {
     drawn_ = max_casters;
     float left = choice * total_ / (1 - unaimed_share);
-    for (size_t c = 0; c < count_; ++c) {
-        if (left < shares_[c]) {
-            drawn_ = c;
-            return Frame(cones_[c].axis).to_world(sample_cone(u, v, cones_[c].one_minus_cosine));
+    for (size_t t = 0; t < targets_.size(); ++t) {
+        const Target &target = targets_[t];
+        if (left < target.share) {
+            drawn_ = t;
+            return Frame(target.cone.axis).to_world(sample_cone(u, v, target.cone.one_minus_cosine));
         }
-        left -= shares_[c];
+        left -= target.share;
     }
     return {};
 }
 
 float DirectionAim::pdf(Vec3 direction, float unaimed) const {
-    if (count_ == 0) return unaimed;
+    if (targets_.empty()) return unaimed;
     float aimed = 0, density = 0;
-    for (size_t c = 0; c < count_; ++c) {
-        aimed += shares_[c];
+    const std::span<const Target> targets = targets_.values();
+    for (size_t t = 0; t < targets.size(); ++t) {
+        const Target &target = targets[t];
+        aimed += target.share;
         // The target drawn counts even where rounding puts the direction just outside.
-        if (c == drawn_ || cones_[c].contains(direction)) density += shares_[c] / cones_[c].solid_angle();
+        if (t == drawn_ || target.cone.contains(direction)) density += target.share / target.cone.solid_angle();
     }
     const float scale = (1 - unaimed_share) / total_;
     return (1 - scale * aimed) * unaimed + scale * density;

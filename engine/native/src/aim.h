@@ -3,11 +3,11 @@
 // density of the whole mixture (Veach 1997, section 9.2.4).
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 
 #include "caster.h"
+#include "fixed_vector.h"
 
 namespace photon_maps {
 
@@ -51,9 +51,13 @@ class DirectionAim {
   private:
     float widest_;
     float total_ = 0;
-    size_t count_ = 0, drawn_ = max_casters;
-    std::array<Cone, max_casters> cones_;
-    std::array<float, max_casters> shares_;
+    /// What photons are aimed at, and its share.
+    struct Target {
+        Cone cone;
+        float share;
+    };
+    FixedVector<Target, max_casters> targets_;
+    size_t drawn_ = max_casters;  ///< number of the target drawn
 };
 
 /// The disks across which parallel light reaches the scene and the casters: none aimed where the disk is as wide.

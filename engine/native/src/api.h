@@ -100,6 +100,8 @@ struct pm_render {
 
     const std::vector<pm::Photon> &photons(uint32_t kind) const {
         pm::require(kind <= PM_PHOTONS_CAUSTIC, "unknown kind of photons " + std::to_string(kind));
+        if (!render.keeps_photons())
+            throw pm::InvalidOperation("photons were not kept: the settings' keep_photons is 0");
         return render.photons(static_cast<pm_photon_kind>(kind));
     }
 };

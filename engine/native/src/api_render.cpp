@@ -59,7 +59,7 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->photon_count = render->render.photon_count();
         statistics->photons_emitted = s.photons_emitted;
         statistics->photons_stored = s.photons_stored;
-        statistics->rays = s.rays;
+        statistics->rays = s.rays.rays;
         statistics->memory_bytes = s.peak_memory_bytes;
         statistics->radius_first = s.radius_first;
         statistics->radius_last = s.radius_last;
@@ -75,6 +75,8 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->caustic_radius_last = s.caustic_radius_last;
         statistics->caster_count = render->state->emission->caster_count();
         statistics->reserved = 0;
+        statistics->shadow_rays = s.rays.shadow_rays;
+        statistics->spared_shadow_rays = s.rays.spared_shadow_rays;
         statistics->seconds_trace = s.seconds_trace;
         statistics->seconds_build = s.seconds_build;
         statistics->seconds_gather = s.seconds_gather;

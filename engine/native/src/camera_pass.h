@@ -7,14 +7,19 @@
 #include "camera.h"
 #include "film.h"
 #include "gather.h"
+#include "guide.h"
 #include "light.h"
 #include "scene.h"
+#include "shadow_photons.h"
 
 namespace photon_maps {
 
-/// The photon maps of a pass; either may be empty.
+enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1, regular_shading = 2 };
+
+/// The photon maps of a pass; either may be empty. The words are those of camera_path.h.
 struct PhotonMaps {
-    PhotonGather indirect, caustic;
+    PhotonGather global;  ///< L (S|D)* D S* D; for a final gather L D too
+    PhotonGather caustic;
 };
 
 struct CameraPass {
@@ -22,7 +27,11 @@ struct CameraPass {
     const Lights &lights;
     const Camera &camera;
     const PixelSampler &pixel_sampler;
-    const PhotonMaps *maps;  ///< null: path tracing
+    Integrator integrator;
+    const PhotonMaps *maps;               ///< null without photons
+    const PhotonImportance *importance;   ///< null: rays go on by the closures alone
+    const ShadowPhotons *shadow_photons;  ///< null: all shadow rays are traced
+    bool use_final_gather;
     uint32_t max_bounces;
     uint32_t seed;
     uint32_t index;  ///< of the pass
@@ -30,8 +39,21 @@ struct CameraPass {
     int threads;
 };
 
-/// Renders one sample a pixel into `film`; returns the number of rays traced.
+/// What a camera pass traced.
+struct RayCounts {
+    uint64_t rays = 0;  ///< of all kinds
+    uint64_t shadow_rays = 0, spared_shadow_rays = 0;
+
+    RayCounts &operator+=(const RayCounts &other) {
+        rays += other.rays;
+        shadow_rays += other.shadow_rays;
+        spared_shadow_rays += other.spared_shadow_rays;
+        return *this;
+    }
+};
+
+/// Renders one sample a pixel into `film`.
 /// @throws Cancelled once `cancel` is set
-uint64_t render_camera_pass(const CameraPass &pass, Film &film, const std::atomic<bool> *cancel);
+RayCounts render_camera_pass(const CameraPass &pass, Film &film, const std::atomic<bool> *cancel);
 
 }  // namespace photon_maps

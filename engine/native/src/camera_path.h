@@ -31,7 +31,7 @@
 namespace photon_maps {
 
 /// Follows a ray of the camera.
-/// @param rays is raised by the rays that were traced
-PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, uint64_t &rays);
+/// @param counts is raised by the rays that were traced
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, RayCounts &counts);
 
 }  // namespace photon_maps

@@ -3,6 +3,7 @@
 
 #include "diffuse.h"
 #include "microfacet.h"
+#include "sampling.h"
 
 namespace photon_maps {
 
@@ -23,18 +24,25 @@ Vec3 albedo(const Closure &closure, Lobes lobes) {
     return sum;
 }
 
+bool is_lambertian(const Closure &closure) {
+    return closure.type == ClosureType::diffuse && closure.roughness < least_diffuse_roughness;
+}
+
+bool has_bumps(const Shading &shading, const Closure &closure) {
+    return !(shading.smooth_normal == Vec3{}) && !(shading.smooth_normal == closure.normal);
+}
+
 Scattering scatter(const Shading &shading, const Closure &closure, Lobes lobes, Vec3 incoming, Transport transport) {
     if (lobes_of(closure.type) & glossy_lobes)
         return scatter_microfacet(closure, lobes, shading.outgoing, incoming, transport);
     Scattering part;
-    if (closure.type == ClosureType::diffuse && closure.roughness < least_diffuse_roughness) {
+    if (is_lambertian(closure)) {
         part.pdf = dot(closure.normal, incoming) / pi;  // Lambert's, without a call
         part.value = closure.weight * part.pdf;
     } else {
         part = scatter_diffuse(closure, shading.outgoing, incoming);
     }
-    const bool has_bumps = !(shading.smooth_normal == Vec3{}) && !(shading.smooth_normal == closure.normal);
-    if (has_bumps && closure.type != ClosureType::translucent)
+    if (has_bumps(shading, closure) && closure.type != ClosureType::translucent)
         part.value = part.value * bump_shadowing(shading.smooth_normal, closure.normal, incoming);
     return part;
 }
@@ -61,6 +69,14 @@ Scattering scatter(const Shading &shading, Lobes lobes, Vec3 incoming, Transport
     }
     sum.pdf = total > 0 ? sum.pdf / total : 0.0f;
     return sum;
+}
+
+/// Samples the closure of most surfaces, alone and without bumps: of its density and value the weight is left.
+std::optional<ScatterSample> sample_lambertian(const Shading &shading, const Closure &closure, float u, float v) {
+    const Vec3 direction = Frame(closure.normal).to_world(sample_cosine_hemisphere(u, v));
+    const float cosine = dot(direction, closure.normal);
+    if (!(cosine > 0) || dot(direction, shading.normal) <= 0) return {};
+    return ScatterSample{direction, closure.weight, cosine / pi, diffuse_reflection, false};
 }
 
 /// A closure drawn by how much it scatters.
@@ -107,6 +123,10 @@ float pdf(const Shading &shading, Lobes lobes, Vec3 incoming) {
 
 std::optional<ScatterSample> sample(const Shading &shading, Lobes lobes, const std::array<float, 3> &u,
                                     Transport transport) {
+    const std::span<const Closure> closures = shading.scattering();
+    if (closures.size() == 1 && is_lambertian(closures[0]) && (lobes & diffuse_reflection) &&
+        !has_bumps(shading, closures[0]))
+        return sample_lambertian(shading, closures[0], u[0], u[1]);
     const Choice choice = choose(shading, lobes, u[2]);
     if (!choice.closure) return {};
     const Closure &closure = *choice.closure;

@@ -88,12 +88,16 @@ std::optional<PhotonEmission> Emission::emit(const Choices &choices, std::span<c
     const size_t source = choices.choose(double{choice[0]} + double{choice[2]} * 0x1p-24);
     const size_t lamp_count = lights_.lamps().size();
     PhotonEmission photon;
-    if (source < lamp_count)
+    if (source < lamp_count) {
         photon = emit_from_lamp(lights_.lamps()[source], sphere_, casters, u);
-    else if (source == world_source())
+        photon.source = source;
+    } else if (source == world_source()) {
         photon = emit_from_world(casters, u);
-    else
+        photon.source = lights_.world_source();
+    } else {
         photon = emit_from_triangle(lights_.emissive_triangles()[source - lamp_count], casters, u);
+        photon.source = lights_.triangles_source();
+    }
     photon.flux = photon.flux / static_cast<float>(choices.probability(source));
     return photon;
 }

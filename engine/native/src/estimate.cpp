@@ -52,8 +52,7 @@ struct Sum {
 
 /// By what the closures of a query multiply the flux of a photon: the scattered share of its light, which came by the
 /// geometric cosine.
-Vec3 scattered_share(const Query &query, uint32_t packed_direction) {
-    const Vec3 incoming = -unpack_direction(packed_direction);
+Vec3 scattered_share(const Query &query, Vec3 incoming) {
     constexpr float least_cosine = 1e-6f;
     const float cosine = std::max(dot(incoming, query.normal), least_cosine);
     const Vec3 scattered = evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance);
@@ -80,7 +79,10 @@ class Gather {
     Sum sum() const {
         int32_t count = 0;
         for (size_t lane = 0; lane < lanes; ++lane) count -= count_[lane];
-        return {{total(red_), total(green_), total(blue_)}, static_cast<uint32_t>(count), total(weight_)};
+        Vec3 flux{total(red_), total(green_), total(blue_)};
+        const Vec3 mean{total(direction_.x), total(direction_.y), total(direction_.z)};
+        if (query_.mean_direction && length_squared(mean) > 0) flux *= scattered_share(query_, -normalize(mean));
+        return {flux, static_cast<uint32_t>(count), total(weight_)};
     }
 
   private:
@@ -106,20 +108,29 @@ class Gather {
         weight = select(mask, weight);
         weight_ += weight;
         count_ += mask;
-        if (query_.shading) {
+        if (query_.shading && !query_.mean_direction) {
             add_scattered(i, mask, weight);
             return;
         }
-        red_ += weight * load(&photons_.red[i]);
-        green_ += weight * load(&photons_.green[i]);
-        blue_ += weight * load(&photons_.blue[i]);
+        const Float8 red = weight * load(&photons_.red[i]), green = weight * load(&photons_.green[i]);
+        const Float8 blue = weight * load(&photons_.blue[i]);
+        red_ += red;
+        green_ += green;
+        blue_ += blue;
+        if (query_.mean_direction) add_direction(unpack_directions(load(&photons_.direction[i])), red + green + blue);
+    }
+
+    [[gnu::always_inline]] void add_direction(const Vec3x8 &direction, Float8 flux) {
+        direction_.x += direction.x * flux;
+        direction_.y += direction.y * flux;
+        direction_.z += direction.z * flux;
     }
 
     /// One photon at a time, through the closures.
     void add_scattered(size_t i, Int8 mask, Float8 weight) {
         for (size_t lane = 0; lane < lanes; ++lane) {
             if (!mask[lane]) continue;
-            const Vec3 share = scattered_share(query_, photons_.direction[i + lane]) * weight[lane];
+            const Vec3 share = scattered_share(query_, -unpack_direction(photons_.direction[i + lane])) * weight[lane];
             red_[lane] += share.x * photons_.red[i + lane];
             green_[lane] += share.y * photons_.green[i + lane];
             blue_[lane] += share.z * photons_.blue[i + lane];
@@ -134,7 +145,8 @@ class Gather {
     float inverse_radius_;
     bool is_smooth_;
     Float8 red_{}, green_{}, blue_{}, weight_{};
-    Int8 count_{};  ///< less the photons that counted
+    Vec3x8 direction_{};  ///< of travel, times flux
+    Int8 count_{};        ///< less the photons that counted
 };
 
 }  // namespace
@@ -155,6 +167,13 @@ Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Qu
     });
     const float area = kernel.norm() * region.share();
     return {sum.flux / area, sum.photons, sum.weight / area};
+}
+
+Kernel kernel_of_nearest(const PhotonMap &map, const Query &query, size_t count, const Kernel &largest) {
+    Kernel kernel = largest;
+    constexpr float least_share = 1e-6f;  // photons may lie on each other
+    kernel.radius = std::max(radius_holding(map, query, count + 1, largest.radius), least_share * largest.radius);
+    return kernel;
 }
 
 float radius_holding(const PhotonMap &map, const Query &query, size_t k, float max_radius) {

@@ -17,6 +17,7 @@ struct Query {
     Vec3 shading_normal;   ///< unit; equal to `normal` on a flat-shaded surface, which is faster
     bool is_bent = false;  ///< leaves out photons from below the tangent plane, which tilted places near p receive
     const Shading *shading = nullptr;  ///< its diffuse reflection weighs every photon: radiance is estimated
+    bool mean_direction = false;       ///< with a shading: weighs all photons as one from their mean direction
 };
 
 struct Estimate {
@@ -28,10 +29,17 @@ struct Estimate {
 /// Estimates the irradiance at a point: E = sum(w flux) / (norm * share) over the photons within the radius, on the
 /// same side of the same surface, and not beyond an edge of it. With a shading normal each photon is weighted by
 /// the ratio of its cosines (Veach 1997, section 5.3). With a shading, its scattered share |cos| takes the place of
-/// the cosine to the shading normal (the seed report's equation 4).
+/// the cosine to the shading normal (the seed report's equation 4); or that of the photons' mean direction by flux
+/// takes the place of each one's.
 /// @param edges built for radii no smaller than the kernel's
 /// @throws std::invalid_argument if the kernel is larger
 Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel);
+
+/// Returns a kernel for the nearest photons: as large as the next one is far, which itself does not count - by all of
+/// them the estimate would be too bright by 1 / count (Moore and Yackel 1977).
+/// @param count >= 1
+/// @param largest is returned where the photons within it are fewer
+Kernel kernel_of_nearest(const PhotonMap &map, const Query &query, size_t count, const Kernel &largest);
 
 /// Returns the smallest radius of a kernel that holds k photons by the same tests of distance, side and plane, edges
 /// left aside; max_radius where fewer are found.

@@ -39,7 +39,9 @@ void Film::set(size_t pixel, const PixelSample &sample) {
     set(Buffer::albedo, pixel, sample.albedo);
     set(Buffer::emission, pixel, sample.emission);
     set(Buffer::direct, pixel, sample.direct);
-    set(Buffer::indirect, pixel, sample.indirect);
+    set(Buffer::indirect, pixel, sample.indirect());
+    set(Buffer::specular, pixel, sample.specular);
+    set(Buffer::soft_indirect, pixel, sample.soft_indirect);
     set(Buffer::caustic, pixel, sample.caustic);
     set(Buffer::background, pixel, sample.background);
     if (std::vector<float> &density = buffers_[static_cast<size_t>(Buffer::photon_density)]; !density.empty())

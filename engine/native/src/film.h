@@ -24,23 +24,26 @@ enum class Buffer : uint32_t {
     indirect,
     caustic,
     background,
-    photon_density
+    photon_density,
+    specular,
+    soft_indirect
 };
-constexpr size_t buffer_count = 11;
-constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3, 3, 3, 1};
+constexpr size_t buffer_count = 13;
+constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3, 3};
 
 /// Depth where nothing is hit, as Blender has it.
 constexpr float no_depth = 1e10f;
 
 /// What one camera path brings to its pixel.
 struct PixelSample {
-    Vec3 emission, background, direct, indirect, caustic;  ///< radiance
+    Vec3 emission, background, direct, specular, soft_indirect, caustic;  ///< radiance
     float alpha = 1;
     float depth = no_depth;
     Vec3 normal, position, albedo;
     float photon_density = 0;  ///< 1/m2
 
-    Vec3 radiance() const { return emission + background + direct + indirect + caustic; }
+    Vec3 indirect() const { return specular + soft_indirect; }
+    Vec3 radiance() const { return emission + background + direct + indirect() + caustic; }
 };
 
 class Film {

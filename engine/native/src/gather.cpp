@@ -7,10 +7,12 @@ namespace {
 
 /// What the estimate asks for: irradiance, or with a shading the radiance that it makes of each photon.
 Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
-    const Coverage::Disc disc = gather.coverage->disc(hit, gather.kernel.radius);
+    Query query{hit.position, hit.normal, closure_normal, false, shading, shading && gather.mean_direction};
     Kernel kernel = gather.kernel;
+    if (gather.nearest_count > 0) kernel = kernel_of_nearest(*gather.map, query, gather.nearest_count, kernel);
+    const Coverage::Disc disc = gather.coverage->disc(hit, kernel.radius);
     kernel.radius = disc.radius;
-    const Query query{hit.position, hit.normal, closure_normal, disc.share != 1, shading};
+    query.is_bent = disc.share != 1;
     Estimate estimate = estimate_photons(*gather.map, *gather.edges, query, kernel);
     estimate.value = estimate.value / disc.share;
     estimate.density /= disc.share;

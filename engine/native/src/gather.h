@@ -15,6 +15,8 @@ struct PhotonGather {
     const EdgeIndex *edges;
     const Coverage *coverage;
     Kernel kernel;
+    uint32_t nearest_count;  ///< of the photons around a point, within the kernel; 0: all within it
+    bool mean_direction;     ///< closures that are not Lambertian see the photons' mean direction
 
     bool empty() const { return map->size() == 0; }
 };

@@ -50,11 +50,14 @@ double dot(Double3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Returns whether an edge from a to b, relative to the kernel's centre, comes near it in its plane.
 bool bounds_surface(Double3 a, Double3 b, Vec3 normal, double radius) {
+    // Most edges lie wholly above or below what counts.
+    const double height_a = dot(a, normal), height_b = dot(b, normal), highest = plane_tolerance * radius;
+    if (std::min(height_a, height_b) >= highest || std::max(height_a, height_b) <= -highest) return false;
     const Double3 ab{b.x - a.x, b.y - a.y, b.z - a.z};
     const double squared = dot(ab, ab);
     const double s = squared > 0 ? std::clamp(-dot(a, ab) / squared, 0.0, 1.0) : 0.0;
     const Double3 closest{a.x + s * ab.x, a.y + s * ab.y, a.z + s * ab.z};
-    return dot(closest, closest) < radius * radius && std::abs(dot(closest, normal)) < plane_tolerance * radius;
+    return dot(closest, closest) < radius * radius && std::abs(height_a + s * (height_b - height_a)) < highest;
 }
 
 /// Clips the line from a to b to the unit disc and adds what is left as a barrier.

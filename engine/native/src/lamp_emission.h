@@ -18,6 +18,7 @@ struct PhotonEmission {
     Vec3 falloff_center;
     float falloff_radius_squared = 0;
     uint32_t visibility = ~0u;  ///< of the light: bits 1 << pm_ray
+    size_t source = 0;          ///< of Lights
 };
 
 /// The random numbers of one photon, in [0, 1).

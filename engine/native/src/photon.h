@@ -8,9 +8,12 @@
 
 namespace photon_maps {
 
+/// Returns the nearest whole number; std::lround is a call.
+inline int round_to_int(float v) { return static_cast<int>(v + std::copysign(0.5f, v)); }
+
 /// Packs a unit vector into three signed bytes (error below 0.008 per component) and a byte of payload on top.
 inline uint32_t pack_normal(Vec3 n, uint32_t payload) {
-    const auto byte = [](float v) { return static_cast<uint32_t>(static_cast<int>(std::lround(v * 127)) & 0xff); };
+    const auto byte = [](float v) { return static_cast<uint32_t>(round_to_int(v * 127) & 0xff); };
     return byte(n.x) | byte(n.y) << 8 | byte(n.z) << 16 | payload << 24;
 }
 
@@ -30,7 +33,7 @@ inline uint32_t pack_direction(Vec3 d) {
         v = (1 - std::abs(u)) * std::copysign(1.0f, v);
         u = folded_u;
     }
-    const auto quantise = [](float t) { return static_cast<uint32_t>(std::lround((t + 1) * 32767)); };
+    const auto quantise = [](float t) { return static_cast<uint32_t>(round_to_int((t + 1) * 32767)); };
     return quantise(u) | quantise(v) << 16;
 }
 

@@ -8,7 +8,7 @@ namespace photon_maps {
 
 namespace {
 
-constexpr uint64_t chunk_size = 1024;
+constexpr uint64_t chunk_size = 1024, chunks_at_once = 1024;
 
 void add(Flux &sum, Vec3 flux) {
     sum[0] += static_cast<double>(flux.x);
@@ -39,6 +39,7 @@ class PhotonPath {
         // Up to its first scattering a photon goes the way of a shadow ray, and passes what lets those pass.
         state_.kinds = 1u << PM_RAY_SHADOW | 1u << PM_RAY_DIFFUSE;
         source_visibility_ = emission.visibility;
+        source_ = emission.source;
         while (step(emission)) {
         }
     }
@@ -56,6 +57,7 @@ class PhotonPath {
         state_.length += hit.distance;
         const uint32_t kind = 1u << (state_.depth == 0 ? PM_RAY_SHADOW : PM_RAY_DIFFUSE);
         if (!(scene_.instances[hit.instance].visibility & kind)) pass_by(hit);
+        if (tracing_.leaves_shadow_photons && state_.depth == 0) mark_shadows(hit);
         const Shading shading = shade(scene_, hit, -ray_.direction, state_);
         record(hit, shading);
         return scatter(hit, shading);
@@ -69,6 +71,23 @@ class PhotonPath {
         beyond.ray_.origin = hit.origin_towards(ray_.direction);
         beyond.state_ = passed(state_);
         while (beyond.step({})) {
+        }
+    }
+
+    /// Leaves a photon of the light's sight, and for the first surface that stops it those of its shadow.
+    void mark_shadows(const SurfacePoint &hit) {
+        const auto source = static_cast<uint32_t>(source_);
+        traced_.shadow_photons.push_back({hit.position, source & 0x7fffffff, 1});
+        if (casts_shadow_ || !(scene_.instances[hit.instance].visibility & 1u << PM_RAY_SHADOW)) return;
+        casts_shadow_ = true;
+        constexpr int most_surfaces = 64;
+        Ray beyond = ray_;
+        SurfacePoint last = hit;
+        for (int surface = 0; surface < most_surfaces; ++surface) {
+            beyond.origin = last.origin_towards(beyond.direction);
+            ++traced_.rays;
+            if (!scene_.intersect(beyond, last)) return;
+            traced_.shadow_photons.push_back({last.position, source & 0x7fffffff, 0});
         }
     }
 
@@ -86,6 +105,7 @@ class PhotonPath {
         if (!(lobes_of(shading) & diffuse_lobes & lobes_that_see(source_visibility_))) return;
         const bool is_direct = state_.depth == 0, is_caustic = !is_direct && !was_diffuse_;
         if (is_caustic != (tracing_.purpose == PhotonPurpose::caustic)) return;
+        if (is_direct && !tracing_.records_direct) return;
         const auto kind = is_direct ? PM_PHOTONS_DIRECT : is_caustic ? PM_PHOTONS_CAUSTIC : PM_PHOTONS_INDIRECT;
         traced_.photons[kind].push_back({hit.position, flux_,
                                          pack_normal(hit.normal, std::min<uint32_t>(state_.depth, 255u)),
@@ -151,16 +171,34 @@ class PhotonPath {
     RayState state_;
     uint32_t source_visibility_ = ~0u;  ///< of the light or object that sent the photon here: bits 1 << pm_ray
     bool was_diffuse_ = false;
+    size_t source_ = 0;          ///< of Lights
+    bool casts_shadow_ = false;  ///< a surface stopped the light; what lies behind is marked
 };
 
 std::optional<PhotonEmission> emit(const Emission &emission, PhotonPurpose purpose, Sequence &sequence) {
     return purpose == PhotonPurpose::caustic ? emission.emit_caustic(sequence) : emission.emit(sequence);
 }
 
-/// Appends one list to another and frees it.
-void move_to(std::vector<Photon> &all, std::vector<Photon> &part) {
-    all.insert(all.end(), part.begin(), part.end());
-    part = {};
+/// Appends the photons of chunks, in their order.
+/// @param share of all photons that will have been traced then: room is made for the rest at once
+void append(TracedPhotons &all, const std::vector<TracedPhotons> &chunks, double share) {
+    for (size_t kind = 0; kind < all.photons.size(); ++kind) {
+        std::vector<Photon> &list = all.photons[kind];
+        size_t count = list.size();
+        for (const TracedPhotons &chunk : chunks) count += chunk.photons[kind].size();
+        constexpr double margin = 1.02;
+        if (count > list.capacity()) {
+            const double expected = share < 1 ? margin * static_cast<double>(count) / share : 0;
+            list.reserve(std::max(count, static_cast<size_t>(expected)));
+        }
+        for (const TracedPhotons &chunk : chunks)
+            list.insert(list.end(), chunk.photons[kind].begin(), chunk.photons[kind].end());
+    }
+    for (const TracedPhotons &chunk : chunks) {
+        all.shadow_photons.insert(all.shadow_photons.end(), chunk.shadow_photons.begin(), chunk.shadow_photons.end());
+        all.balance += chunk.balance;
+        all.rays += chunk.rays;
+    }
 }
 
 }  // namespace
@@ -177,31 +215,24 @@ FluxBalance &FluxBalance::operator+=(const FluxBalance &other) {
 
 TracedPhotons trace_photons(const Scene &scene, const Emission &emission, const PhotonTracing &tracing,
                             const std::atomic<bool> *cancel) {
-    // Trace chunks of photons, each into its own lists.
-    const uint64_t chunk_count = (tracing.count + chunk_size - 1) / chunk_size;
-    std::vector<TracedPhotons> chunks(chunk_count);
-    parallel_for(tracing.threads, chunk_count, cancel, [&](size_t c) {
-        const uint64_t begin = c * chunk_size, end = std::min(begin + chunk_size, tracing.count);
-        for (uint64_t i = begin; i < end; ++i) {
-            throw_if_cancelled(cancel);
-            Sequence sequence(tracing.first + i, tracing.seed);
-            const std::optional<PhotonEmission> photon = emit(emission, tracing.purpose, sequence);
-            if (!photon || !(max_component(photon->flux) > 0)) continue;
-            PhotonPath(scene, tracing, sequence, chunks[c]).trace(*photon);
-        }
-    });
-
-    // Join them in the order of emission.
+    // Trace chunks of photons, each into its own lists; join them in the order of emission. Not all at once, for the
+    // lists would then be there twice.
     TracedPhotons all;
-    for (size_t kind = 0; kind < all.photons.size(); ++kind) {
-        size_t count = 0;
-        for (const TracedPhotons &chunk : chunks) count += chunk.photons[kind].size();
-        all.photons[kind].reserve(count);
-        for (TracedPhotons &chunk : chunks) move_to(all.photons[kind], chunk.photons[kind]);
-    }
-    for (const TracedPhotons &chunk : chunks) {
-        all.balance += chunk.balance;
-        all.rays += chunk.rays;
+    const uint64_t chunk_count = (tracing.count + chunk_size - 1) / chunk_size;
+    for (uint64_t first = 0; first < chunk_count; first += chunks_at_once) {
+        const uint64_t last = std::min(first + chunks_at_once, chunk_count);
+        std::vector<TracedPhotons> chunks(last - first);
+        parallel_for(tracing.threads, chunks.size(), cancel, [&](size_t c) {
+            const uint64_t begin = (first + c) * chunk_size, end = std::min(begin + chunk_size, tracing.count);
+            for (uint64_t i = begin; i < end; ++i) {
+                throw_if_cancelled(cancel);
+                Sequence sequence(tracing.first + i, tracing.seed);
+                const std::optional<PhotonEmission> photon = emit(emission, tracing.purpose, sequence);
+                if (!photon || !(max_component(photon->flux) > 0)) continue;
+                PhotonPath(scene, tracing, sequence, chunks[c]).trace(*photon);
+            }
+        });
+        append(all, chunks, static_cast<double>(last) / static_cast<double>(chunk_count));
     }
     return all;
 }

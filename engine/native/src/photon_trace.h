@@ -11,6 +11,7 @@
 #include "photon.h"
 #include "photon_maps.h"
 #include "scene.h"
+#include "shadow_photons.h"
 
 namespace photon_maps {
 
@@ -27,6 +28,7 @@ struct FluxBalance {
 /// The photons of one pass, by pm_photon_kind, in the order of their emission.
 struct TracedPhotons {
     std::array<std::vector<Photon>, 3> photons;
+    std::vector<ShadowPhoton> shadow_photons;
     FluxBalance balance;  ///< of the photons that are not aimed
     uint64_t rays = 0;
 
@@ -48,6 +50,8 @@ struct PhotonTracing {
     uint32_t max_bounces;  ///< a photon that has bounced so often is recorded once more and ends
     uint32_t seed;
     int threads;
+    bool records_direct = false;  ///< L D as well, which only a final gather needs: lights are sampled elsewhere
+    bool leaves_shadow_photons = false;
 };
 
 /// Traces photons; the result does not depend on the number of threads.

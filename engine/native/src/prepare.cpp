@@ -2,6 +2,7 @@
 // What is done to a material once, so that each of its many runs does less; and what can be said of it beforehand.
 #include "fold.h"
 #include "photon_maps_shader.h"
+#include "scene.h"
 #include "shader_ops.h"
 
 namespace photon_maps {
@@ -132,6 +133,33 @@ MaterialTraits traits_of(const Program &program) {
     return traits;
 }
 
+/// Whether what the closure adds is the same at all points but for the shading normal.
+bool is_known(const KnownArguments &a) {
+    switch (a.instruction.op) {
+        case PM_OP_DIFFUSE:
+            return a.is_constant(0) && a[1] && a[1]->x <= 0 && !a.is_constant(2);
+        case PM_OP_EMISSION:
+        case PM_OP_TRANSPARENT:
+        case PM_OP_HOLDOUT:
+            return a.is_constant(0);
+        default:
+            return false;
+    }
+}
+
+/// Returns what shade() makes of any point, if all closures are known and no instruction is left but the normal's.
+std::optional<Shading> prototype_of(const Material &material, const Scene &scene) {
+    const bool all_known = std::ranges::all_of(material.program.instructions, [&](const pm_instruction &instruction) {
+        return is_closure(instruction.op) ? is_known({material.program, instruction})
+                                          : instruction.op == PM_OP_INPUT && instruction.option == PM_INPUT_NORMAL;
+    });
+    if (!all_known) return {};
+    SurfacePoint anywhere{};
+    anywhere.normal = anywhere.shading_normal = {0, 0, 1};
+    anywhere.material = &material;
+    return shade(scene, anywhere, {0, 0, 1}, {});
+}
+
 }  // namespace
 
 void prepare(Material &material, const Scene &scene) {
@@ -141,6 +169,8 @@ void prepare(Material &material, const Scene &scene) {
     material.transparency = with_closures(
         material.program, [&](const pm_instruction &closure) { return is_transparent({material.program, closure}); });
     material.traits = traits_of(material.program);
+    material.prototype.reset();
+    material.prototype = prototype_of(material, scene);
 }
 
 }  // namespace photon_maps

@@ -30,14 +30,20 @@ void run(const ShaderPoint &point, const Program &program, Close &&close) {
 }  // namespace
 
 Shading shade(const Scene &scene, const SurfacePoint &hit, Vec3 outgoing, const RayState &ray) {
-    Shading shading;
+    const Material &material = *hit.material;
+    const bool is_shadow = ray.kinds == 1u << PM_RAY_SHADOW;
+    const bool is_known = material.prototype && !is_shadow;
+    Shading shading = is_known ? *material.prototype : Shading();
     shading.outgoing = outgoing;
     shading.normal = hit.normal;
     shading.smooth_normal = hit.shading_normal;
     shading.is_backfacing = hit.is_backfacing;
-    const Material &material = *hit.material;
+    if (is_known) {
+        for (Closure &closure : shading.closures.values()) closure.normal = hit.shading_normal;
+        return shading;
+    }
     const ShaderPoint point{scene, material, &hit, outgoing, ray};
-    if (ray.kinds == 1u << PM_RAY_SHADOW) {
+    if (is_shadow) {
         run(point, material.transparency, [&](const pm_instruction &instruction, const Operands &arguments) {
             add_transparency(shading, instruction, arguments);
         });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct Material {
     Program transparency;  ///< what of it shadow rays need; made by prepare()
     uint32_t index = 0;    ///< Blender's pass index
     MaterialTraits traits;
+    std::optional<Shading> prototype;  ///< what shade() makes of any point but for its normals, where that is all
 
     bool emits() const { return traits.emits; }
 };

@@ -47,16 +47,35 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       film_(camera.width, camera.height, settings.buffers) {}
 
 bool Render::traces(PhotonPurpose purpose) const {
-    const bool wants_photons = settings_.integrator == Integrator::photon_map && settings_.max_bounces > 0;
+    const bool wants_photons =
+        (settings_.integrator == Integrator::photon_map || is_guided()) && settings_.max_bounces > 0;
     if (!wants_photons || emission_.empty() || scene_.instances.empty()) return false;
     return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
                                              : settings_.use_indirect;
 }
 
+/// Whether photons tell camera paths where to go on diffusely.
+bool Render::is_guided() const {
+    const bool goes_on = settings_.integrator == Integrator::path_tracing ||
+                         (settings_.integrator == Integrator::photon_map && settings_.use_final_gather);
+    return settings_.use_photon_guiding && goes_on;
+}
+
+bool Render::marks_shadows() const {
+    return settings_.use_shadow_photons && settings_.integrator == Integrator::photon_map;
+}
+
 PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
     const uint32_t stream = purpose == PhotonPurpose::caustic ? caustic_stream : photon_stream;
-    return {purpose,          photon_count_ * index, photon_count_, settings_.max_bounces, hash(settings_.seed, stream),
-            settings_.threads};
+    const bool is_global = purpose == PhotonPurpose::global;
+    return {purpose,
+            photon_count_ * index,
+            photon_count_,
+            settings_.max_bounces,
+            hash(settings_.seed, stream),
+            settings_.threads,
+            settings_.keep_photons || (is_global && settings_.use_final_gather),
+            is_global && marks_shadows()};
 }
 
 void Render::render_pass(uint32_t index) {
@@ -114,14 +133,66 @@ PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
 
 TracedPhotons Render::trace(uint32_t index) {
     TracedPhotons photons;
-    if (traces(PhotonPurpose::global))
-        photons = trace_photons(scene_, emission_, tracing(PhotonPurpose::global, index), &cancel_);
+    if (traces(PhotonPurpose::global)) {
+        PhotonTracing global = tracing(PhotonPurpose::global, index);
+        if (settings_.use_final_gather) --global.max_bounces;  // the gathering ray is a bounce more
+        photons = trace_photons(scene_, emission_, global, &cancel_);
+    }
     if (first_radii_->caustic > 0) {
         TracedPhotons aimed = trace_photons(scene_, emission_, tracing(PhotonPurpose::caustic, index), &cancel_);
         photons.photons[PM_PHOTONS_CAUSTIC] = std::move(aimed.photons[PM_PHOTONS_CAUSTIC]);
         photons.rays += aimed.rays;
     }
     return photons;
+}
+
+/// Builds what pass 2 asks of the photons, whose lists end here unless they are kept.
+Render::Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) const {
+    Maps maps;
+    if (is_guided() && radii.indirect > 0) maps.importance = importance_of(photons);
+    if (marks_shadows() && radii.indirect > 0) maps.shadow_photons.emplace(photons.shadow_photons, radii.indirect / 2);
+    const size_t beside = (maps.importance ? maps.importance->memory_bytes() : 0) +
+                          (maps.shadow_photons ? maps.shadow_photons->memory_bytes() : 0) +
+                          photons.shadow_photons.size() * sizeof(ShadowPhoton);
+    photons.shadow_photons = {};
+    const auto count_memory = [&](size_t listed) {
+        maps.memory_bytes = std::max(maps.memory_bytes, beside + listed * sizeof(Photon) + maps.global.memory_bytes() +
+                                                            maps.caustic.memory_bytes());
+    };
+    count_memory(photons.size());
+    const auto build = [&](PhotonMap &map, pm_photon_kind kind, const std::vector<Photon> &list) {
+        map = map_of(list);
+        count_memory(photons.size());
+        if (!settings_.keep_photons) photons.photons[kind] = {};  // the map has copies
+    };
+    if (settings_.integrator != Integrator::photon_map) return maps;
+    if (radii.indirect > 0 && settings_.use_final_gather) {
+        // Where the rays of a final gather end, photons bring the lights' own light too.
+        std::vector<Photon> all = photons[PM_PHOTONS_DIRECT];
+        all.insert(all.end(), photons[PM_PHOTONS_INDIRECT].begin(), photons[PM_PHOTONS_INDIRECT].end());
+        count_memory(photons.size() + all.size());
+        build(maps.global, PM_PHOTONS_INDIRECT, all);
+    } else if (radii.indirect > 0) {
+        build(maps.global, PM_PHOTONS_INDIRECT, photons[PM_PHOTONS_INDIRECT]);
+    }
+    if (radii.caustic > 0) build(maps.caustic, PM_PHOTONS_CAUSTIC, photons[PM_PHOTONS_CAUSTIC]);
+    return maps;
+}
+
+/// What paths do not find by light sampling nor in a map: in path tracing caustics too.
+PhotonImportance Render::importance_of(const TracedPhotons &photons) const {
+    // Photons that only tell where to go are not summed: their cubes need not shrink.
+    PhotonImportance importance(2 * first_radii_->indirect);
+    importance.add(photons[PM_PHOTONS_INDIRECT]);
+    if (settings_.integrator == Integrator::path_tracing) importance.add(photons[PM_PHOTONS_CAUSTIC]);
+    return importance;
+}
+
+PhotonGather Render::gather(const PhotonMap &map, float radius) const {
+    Kernel kernel = settings_.kernel;
+    kernel.radius = radius;
+    return {
+        &map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel, settings_.nearest_count, settings_.mean_direction};
 }
 
 void Render::render_into(Film &pass_film, uint32_t index) {
@@ -141,27 +212,27 @@ void Render::render_into(Film &pass_film, uint32_t index) {
         const Stopwatch watch(spent.seconds_trace);
         photons = trace(index);
     }
-    PhotonMap indirect, caustic;
+    spent.photons_stored = photons.size();
+    spent.caustic_photons = photons[PM_PHOTONS_CAUSTIC].size();
+    Maps maps;
     {
         const Stopwatch watch(spent.seconds_build);
-        if (radii.indirect > 0) indirect = map_of(photons[PM_PHOTONS_INDIRECT]);
-        if (radii.caustic > 0) caustic = map_of(photons[PM_PHOTONS_CAUSTIC]);
+        maps = build_maps(photons, radii);
     }
 
     // Pass 2: camera rays.
     {
         const Stopwatch watch(spent.seconds_gather);
-        const auto gather = [&](const PhotonMap &map, float radius) -> PhotonGather {
-            Kernel kernel = settings_.kernel;
-            kernel.radius = radius;
-            return {&map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel};
-        };
-        const PhotonMaps maps{gather(indirect, radii.indirect), gather(caustic, radii.caustic)};
+        const PhotonMaps gathers{gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
         const CameraPass pass{scene_,
                               lights_,
                               camera_,
                               pixel_sampler_,
-                              settings_.integrator == Integrator::photon_map ? &maps : nullptr,
+                              settings_.integrator,
+                              settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
+                              maps.importance ? &*maps.importance : nullptr,
+                              maps.shadow_photons ? &*maps.shadow_photons : nullptr,
+                              settings_.use_final_gather && settings_.use_indirect,
                               settings_.max_bounces,
                               hash(settings_.seed, camera_stream),
                               index,
@@ -172,14 +243,14 @@ void Render::render_into(Film &pass_film, uint32_t index) {
 
     // Keep the photons for those who ask, and add up what the pass took.
     const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
-                          pass_film.memory_bytes() + photons.size() * sizeof(Photon) + indirect.memory_bytes() +
-                          caustic.memory_bytes() + (coverage_ ? coverage_->memory_bytes() : 0);
+                          pass_film.memory_bytes() + maps.memory_bytes + (coverage_ ? coverage_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
     total.photons_emitted += photon_count_ * (uint64_t{traces(PhotonPurpose::global)} + uint64_t{radii.caustic > 0});
-    total.photons_stored += photons.size();
-    total.caustic_photons += photons[PM_PHOTONS_CAUSTIC].size();
-    total.rays += spent.rays + photons.rays;
+    total.photons_stored += spent.photons_stored;
+    total.caustic_photons += spent.caustic_photons;
+    total.rays += spent.rays;
+    total.rays.rays += photons.rays;
     total.balance += photons.balance;
     if (film_.passes() == 0) {
         total.radius_first = radii.indirect;
@@ -190,7 +261,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     total.seconds_trace += spent.seconds_trace;
     total.seconds_build += spent.seconds_build;
     total.seconds_gather += spent.seconds_gather;
-    photons_ = std::move(photons.photons);
+    if (settings_.keep_photons) photons_ = std::move(photons.photons);
     last_radii_ = radii;
 }
 
@@ -198,7 +269,9 @@ Vec3 Render::irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, V
     Kernel kernel = settings_.kernel;
     kernel.radius = kind == PM_PHOTONS_CAUSTIC ? last_radii_.caustic : last_radii_.indirect;
     if (map.size() == 0 || !(kernel.radius > 0)) return {};
-    return estimate_photons(map, edges_, {point, normal, normal}, kernel).value;
+    const Query query{point, normal, normal};
+    if (settings_.nearest_count > 0) kernel = kernel_of_nearest(map, query, settings_.nearest_count, kernel);
+    return estimate_photons(map, edges_, query, kernel).value;
 }
 
 }  // namespace photon_maps

@@ -13,14 +13,14 @@
 
 namespace photon_maps {
 
-enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1 };
-
 struct RenderSettings {
     Integrator integrator;
-    uint64_t photon_count;  ///< per pass and map; 0: as many as the frame has pixels, within bounds
-    Kernel kernel;          ///< of the first pass; radius 0: chosen from pilot photons, for each map its own
+    uint64_t photon_count;   ///< per pass and map; 0: as many as the frame has pixels, within bounds
+    Kernel kernel;           ///< of the first pass; radius 0: chosen from pilot photons, for each map its own
+    uint32_t nearest_count;  ///< of the photons around a point, within the kernel's radius; 0: all within it
+    bool mean_direction;     ///< surfaces that are not Lambertian scatter photons by their mean direction
     uint32_t max_bounces;
-    bool use_caustics, use_indirect;
+    bool use_caustics, use_indirect, use_final_gather, use_shadow_photons, use_photon_guiding;
     uint32_t seed;
     bool use_progressive;
     PixelFilter pixel_filter;
@@ -28,10 +28,12 @@ struct RenderSettings {
     bool film_transparent;
     int threads;
     uint32_t buffers;  ///< bit 1 << Buffer
+    bool keep_photons;
 };
 
 struct RenderStatistics {
-    uint64_t photons_emitted = 0, photons_stored = 0, caustic_photons = 0, rays = 0;
+    uint64_t photons_emitted = 0, photons_stored = 0, caustic_photons = 0;
+    RayCounts rays;
     size_t peak_memory_bytes = 0;
     float radius_first = 0, radius_last = 0;
     float caustic_radius_first = 0, caustic_radius_last = 0;
@@ -54,9 +56,10 @@ class Render {
 
     const Film &film() const { return film_; }
     const RenderStatistics &statistics() const { return statistics_; }
+    bool keeps_photons() const { return settings_.keep_photons; }
     uint64_t photon_count() const { return photon_count_; }
 
-    /// Photons of the last finished pass.
+    /// Photons of the last finished pass, if they are kept.
     const std::vector<Photon> &photons(pm_photon_kind kind) const { return photons_[kind]; }
     /// Irradiance at a point from photons like those of a kind, by that kind's radius.
     Vec3 irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const;
@@ -68,11 +71,24 @@ class Render {
         float indirect = 0, caustic = 0;
     };
 
+    /// What pass 2 asks of a pass's photons.
+    struct Maps {
+        PhotonMap global, caustic;
+        std::optional<PhotonImportance> importance;
+        std::optional<ShadowPhotons> shadow_photons;
+        size_t memory_bytes = 0;  ///< at its peak, with the lists that they were built from
+    };
+
     bool traces(PhotonPurpose purpose) const;
+    bool is_guided() const;
+    bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     void choose_radii();
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
+    Maps build_maps(TracedPhotons &photons, const Radii &radii) const;
+    PhotonImportance importance_of(const TracedPhotons &photons) const;
+    PhotonGather gather(const PhotonMap &map, float radius) const;
     void render_into(Film &pass_film, uint32_t index);
 
     Scene &scene_;

@@ -20,6 +20,16 @@ inline Vec2 sample_disk(float u, float v) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
+/// The point of the unit square that sample_disk() takes to a point of the unit disk.
+inline Vec2 disk_to_square(Vec2 d) {
+    if (d.x == 0 && d.y == 0) return {0.5f, 0.5f};
+    const float radius = std::sqrt(d.x * d.x + d.y * d.y);
+    const bool wide = std::abs(d.x) > std::abs(d.y);
+    const float a = wide ? std::copysign(radius, d.x) : std::copysign(radius, d.y) * (4 / pi) * std::atan(d.x / d.y);
+    const float b = wide ? std::copysign(radius, d.x) * (4 / pi) * std::atan(d.y / d.x) : std::copysign(radius, d.y);
+    return {std::clamp((a + 1) / 2, 0.0f, 1.0f), std::clamp((b + 1) / 2, 0.0f, 1.0f)};
+}
+
 /// A direction about +z with density cos/pi.
 inline Vec3 sample_cosine_hemisphere(float u, float v) {
     const Vec2 d = sample_disk(u, v);

@@ -28,6 +28,27 @@ rtc::Ray to_embree(const Ray &ray) {
             0};
 }
 
+/// A triangle's corners as its mesh has them.
+WorldTriangle stored_triangle(const Mesh &mesh, uint32_t triangle) {
+    const Triangle &t = mesh.triangles[triangle];
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+WorldTriangle to_world(const Instance &instance, const Mesh &mesh, const WorldTriangle &stored) {
+    if (mesh.use_count == 1) return stored;
+    const Transform &m = instance.transform;
+    return {m.point(stored.a), m.point(stored.b), m.point(stored.c)};
+}
+
+/// Three roundings of the point's own and those of the instance's transform (Pharr, Jakob, Humphreys 2023, section
+/// 6.8): of all the terms, which may cancel to a small coordinate.
+float rounding_error(const Instance &instance, const Mesh &mesh, const WorldTriangle &stored) {
+    const Vec3 v = max(abs(stored.a), max(abs(stored.b), abs(stored.c)));
+    const Transform &m = instance.transform;
+    const Vec3 terms = mesh.use_count == 1 ? v : abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z + abs(m.origin);
+    return 8 * std::numeric_limits<float>::epsilon() * max_component(terms);
+}
+
 }  // namespace
 
 Scene::~Scene() {
@@ -41,6 +62,7 @@ void Scene::freeze() {
     count_uses();
     find_bounds();
     find_closed_meshes();
+    for (Instance &instance : instances) instance.is_mirrored = instance.place.determinant() < 0;
     move_single_uses_to_world();
     frozen_ = true;
 }
@@ -204,26 +226,27 @@ SurfacePoint Scene::surface_point(uint32_t instance_index, uint32_t triangle, fl
     hit.u = u;
     hit.v = v;
     hit.distance = 0;
-    hit.material = &material(instance_index, triangle);
     const Instance &instance = instances[instance_index];
+    const Mesh &mesh = meshes[instance.mesh];
+    const uint32_t slot = mesh.slots.empty() ? 0 : mesh.slots[triangle];
+    hit.material = &materials[slot_materials[instance.first_slot + slot]];
 
     // Position from the triangle, not from the distance: its error does not grow with the ray's length.
-    const WorldTriangle t = world_triangle(instance_index, triangle);
+    const WorldTriangle stored = stored_triangle(mesh, triangle), t = to_world(instance, mesh, stored);
     const Vec3 ab = t.b - t.a, ac = t.c - t.a;
     hit.position = t.a + ab * u + ac * v;
-    hit.error = position_error(instance_index, triangle);
+    hit.error = rounding_error(instance, mesh, stored);
 
     // Geometric normal towards the ray; a triangle so thin that it has none takes the ray's own direction.
     const Vec3 n = cross(ab, ac);
     const float n_length = length(n);
     hit.normal = n_length > 0 ? n / n_length : -normalize(travel);
-    if (n_length > 0 && instance.place.determinant() < 0) hit.normal = -hit.normal;  // mirrored: as in the object
+    if (n_length > 0 && instance.is_mirrored) hit.normal = -hit.normal;  // mirrored: as in the object
     hit.is_backfacing = dot(hit.normal, travel) > 0;
     if (hit.is_backfacing) hit.normal = -hit.normal;
 
     // Shading normal on the same side.
     hit.shading_normal = hit.normal;
-    const Mesh &mesh = meshes[instance.mesh];
     if (!mesh.corner_normals.empty()) {
         const Vec3 *corners = &mesh.corner_normals[3 * size_t{triangle}];
         const Vec3 world_normal = instance.transform.normal(corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v);
@@ -288,22 +311,13 @@ const Material &Scene::material(uint32_t instance, uint32_t triangle) const {
 WorldTriangle Scene::world_triangle(uint32_t instance, uint32_t triangle) const {
     const Instance &i = instances[instance];
     const Mesh &mesh = meshes[i.mesh];
-    const Triangle &t = mesh.triangles[triangle];
-    const WorldTriangle corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-    if (mesh.use_count == 1) return corners;
-    return {i.transform.point(corners.a), i.transform.point(corners.b), i.transform.point(corners.c)};
+    return to_world(i, mesh, stored_triangle(mesh, triangle));
 }
 
 float Scene::position_error(uint32_t instance, uint32_t triangle) const {
     const Instance &i = instances[instance];
     const Mesh &mesh = meshes[i.mesh];
-    const Triangle &t = mesh.triangles[triangle];
-    const Vec3 v = max(abs(mesh.vertices[t[0]]), max(abs(mesh.vertices[t[1]]), abs(mesh.vertices[t[2]])));
-    // Three roundings of the point's own and those of the instance's transform (Pharr, Jakob, Humphreys 2023, section
-    // 6.8): of all the terms, which may cancel to a small coordinate.
-    const Transform &m = i.transform;
-    const Vec3 terms = mesh.use_count == 1 ? v : abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z + abs(m.origin);
-    return 8 * std::numeric_limits<float>::epsilon() * max_component(terms);
+    return rounding_error(i, mesh, stored_triangle(mesh, triangle));
 }
 
 }  // namespace photon_maps

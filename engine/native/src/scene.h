@@ -48,6 +48,7 @@ struct Instance {
     uint32_t first_slot = 0;    ///< into Scene::slot_materials
     Transform transform{};      ///< identity once a mesh that is used only here has been moved into world space
     Transform place{};          ///< object to world, always
+    bool is_mirrored = false;   ///< by `place`; known once the scene is frozen
     uint32_t visibility = ~0u;  ///< bits 1 << pm_ray
     Rgba color{};               ///< the object's, for shaders; as are the next two
     float index = 0, random = 0;

@@ -139,11 +139,15 @@ void validate(const pm_camera &camera) {
 
 void validate(const pm_settings &settings) {
     require_struct_size(settings.struct_size, sizeof(pm_settings), "pm_settings");
-    require(settings.integrator <= PM_PATH_TRACING, "unknown integrator " + std::to_string(settings.integrator));
+    require(settings.integrator <= PM_REGULAR_SHADING, "unknown integrator " + std::to_string(settings.integrator));
     require(settings.photon_count <= 1'000'000'000, "photon_count is beyond 1e9");
     if (settings.radius != 0) require_range(settings.radius, min_radius, max_coordinate, "radius");
     require(settings.filter <= PM_FILTER_EPANECHNIKOV, "unknown filter " + std::to_string(settings.filter));
     require(settings.cone_k >= 1 && std::isfinite(settings.cone_k), "cone_k must be a finite number of at least 1");
+    require(settings.estimate <= PM_ESTIMATE_NEAREST, "unknown estimate " + std::to_string(settings.estimate));
+    require(settings.nearest_count >= 1 && settings.nearest_count <= 1'000'000, "nearest_count must be from 1 to 1e6");
+    require(settings.brdf_direction <= PM_BRDF_MEAN,
+            "unknown brdf_direction " + std::to_string(settings.brdf_direction));
     require(settings.max_bounces <= 1024, "max_bounces is beyond 1024");
     require(settings.pixel_filter <= PM_PIXEL_BLACKMAN_HARRIS,
             "unknown pixel filter " + std::to_string(settings.pixel_filter));

@@ -65,6 +65,7 @@ struct Frame {
         y = {b, sign + z.y * z.y * a, -z.y};
     }
     Vec3 to_world(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
+    Vec3 to_local(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
 };
 
 /// A 3x4 affine transform by its columns: world = x*p.x + y*p.y + z*p.z + origin.

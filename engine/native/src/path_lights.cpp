@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the lights bring to a vertex of a camera path.
+#include "path_steps.h"
+
+namespace photon_maps {
+
+void CameraPath::sample_lights(const SurfacePoint &hit, const Shading &shading) {
+    if (asks_every_source()) {
+        for (size_t source = 0; source < pass_.lights.source_count(); ++source) {
+            if (!pass_.lights.shines(source)) continue;
+            const auto u = sequence_.next();
+            sample_source(hit, shading, {source, 1, u[2]}, u);
+        }
+    } else {
+        const auto u = sequence_.next();
+        if (const auto choice = pass_.lights.choose(hit.position, u[2])) sample_source(hit, shading, *choice, u);
+    }
+}
+
+void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, const Lights::Choice &choice,
+                               const std::array<float, 4> &u) {
+    const bool both_sides = (lobes_of(shading) & transmissive_lobes) != 0;
+    const auto light = pass_.lights.sample(choice.source, hit.position, hit.shading_normal, both_sides,
+                                           receiver(shading), {u[0], u[1], choice.left});
+    if (!light) return;
+    const bool transmits = dot(light->direction, hit.normal) < 0;
+    std::array<Vec3, 2> scattered;
+    const std::array<Lobes, 2> parts = {diffuse_lobes, glossy_lobes};
+    for (size_t part = 0; part < 2; ++part) {
+        const Lobe lobe = part == 0 ? (transmits ? diffuse_transmission : diffuse_reflection)
+                                    : (transmits ? glossy_transmission : glossy_reflection);
+        if (!(light->visibility & visible_kind(lobe)) || is_gathered(word_.then(parts[part]))) continue;
+        scattered[part] = evaluate(shading, parts[part], light->direction, transport(hit));
+        if (max_component(scattered[part]) <= 0) continue;
+        const float other = light->pdf > 0 ? other_pdf(shading, parts[part], choice.source, light->direction) : 0;
+        const float mis = other > 0 ? power_heuristic(light->pdf * choice.probability, other) : 1;
+        scattered[part] = scattered[part] * (mis / choice.probability);
+    }
+    if (max_component(scattered[0] + scattered[1]) <= 0) return;
+    const Ray shadow{hit.origin_towards(light->direction), light->direction, 0, light->distance};
+    const Vec3 arriving = throughput_ * light->radiance * transmittance(shadow, hit, choice.source);
+    for (size_t part = 0; part < 2; ++part) word_.then(parts[part]).buffer(sample_) += scattered[part] * arriving;
+}
+
+/// The share of a light's radiance that comes through to a point; without a ray where shadow photons tell.
+Vec3 CameraPath::transmittance(const Ray &shadow, const SurfacePoint &hit, size_t source) {
+    const Visibility seen =
+        pass_.shadow_photons ? pass_.shadow_photons->visibility(hit.position, source) : Visibility::unknown;
+    ++(seen == Visibility::unknown ? counts_.shadow_rays : counts_.spared_shadow_rays);
+    if (seen == Visibility::unknown) return pass_.scene.transmittance(shadow, counts_.rays);
+    return seen == Visibility::lit ? Vec3{1, 1, 1} : Vec3{};
+}
+
+/// The state of rays that would come to a light instead of light sampling.
+RayState CameraPath::receiver(const Shading &shading) const {
+    RayState state = state_;
+    state.kinds = 0;
+    ++state.depth;
+    for (const Lobe lobe : {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission})
+        if (lobes_of(shading) & lobe) state.kinds |= ray_kinds(lobe);
+    return state;
+}
+
+/// Density with which a ray by these lobes will go in a direction to meet a source.
+float CameraPath::other_pdf(const Shading &shading, Lobes lobes, size_t source, Vec3 direction) const {
+    float probability = lobes == glossy_lobes ? go_glossy_ : go_diffuse_;
+    if (asks_emitters() && lobes == diffuse_lobes) probability = source == pass_.lights.triangles_source() ? 1 : 0;
+    if (guide_ && lobes == diffuse_lobes) return probability * pdf_guided(*guide_, shading, direction);
+    return probability > 0 ? probability * pdf(shading, lobes, direction) : 0;
+}
+
+/// A ray by the diffuse closures that counts only if it meets an emissive surface: photons bring the rest.
+void CameraPath::meet_emitters(const SurfacePoint &hit, const Shading &shading) {
+    const auto u = sequence_.next();
+    const auto drawn = sample(shading, diffuse_lobes, {u[0], u[1], u[2]}, Transport::radiance);
+    if (!drawn) return;
+    RayState state = scattered(state_, *drawn);
+    Ray ray{hit.origin_towards(drawn->direction), drawn->direction};
+    ray.kinds = visible_kind(drawn->lobe);
+    Vec3 reached = throughput_ * drawn->weight;
+    SurfacePoint next;
+    for (; state.transparent_depth < max_transparent_depth; state = passed(state)) {
+        ++counts_.rays;
+        if (!pass_.scene.intersect(ray, next)) return;
+        state.length += next.distance;
+        if (!next.material->traits.emits && !next.material->traits.is_transparent) return;
+        const Shading there = shade(pass_.scene, next, -ray.direction, state);
+        if (max_component(there.emission) > 0) {
+            const size_t source = pass_.lights.triangles_source();
+            const float choice = asks_every_source() ? 1 : pass_.lights.choice_probability(source, hit.position);
+            const float light_pdf = choice * pass_.lights.triangle_pdf(hit.position, next);
+            word_.then(diffuse_lobes).buffer(sample_) +=
+                reached * there.emission * power_heuristic(drawn->pdf, light_pdf);
+        }
+        reached *= there.transparency;
+        if (max_component(reached) <= 0) return;
+        ray.origin = next.origin_towards(ray.direction);
+    }
+}
+
+}  // namespace photon_maps

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""No map is built that the scene or the settings do not need, and it is said which and why."""
+
+from __future__ import annotations
+
+import pytest
+from photon_maps_native import LightType, diffuse
+
+from engine.map_choice import explain_maps, maps_built
+from engine.settings import Integrator, RenderSettings
+from tests.reference_scenes import Glass, substance_material
+from tests.shapes import Picture, camera, lamp, quad, scene, sphere
+
+GLASS, FLOOR = substance_material(Glass(1.5)), diffuse()
+
+
+def rendered(settings: RenderSettings, ball=GLASS, power: float = 100.0):
+    """Render a ball over a floor under a lamp; return the statistics."""
+    meshes = [quad((0, 0, -1), (4, 0, 0), (0, 4, 0)), sphere(0.4, 16)]
+    light = lamp(LightType.POINT, (0, 0, 2), (0, 0, 0), power, size=(0.05, 0.0))
+    data = scene(meshes, camera((0, -4, 2), (0, 0, -0.5), (8, 8)), [FLOOR, ball], [light])
+    return Picture(data, settings).run(1).render.statistics()
+
+
+@pytest.mark.parametrize(
+    ("fields", "ball", "maps", "words"),
+    [
+        ({}, GLASS, ["global", "caustic"], ("Global map: radius", "Caustic map: radius")),
+        ({}, FLOOR, ["global"], ("Global map: radius", "No caustic map: nothing focuses light")),
+        ({"use_caustics": False}, GLASS, ["global"], ("Global map", "No caustic map: Caustics is off")),
+        ({"use_indirect": False}, GLASS, ["caustic"], ("No global map: Indirect Light is off", "Caustic map")),
+        ({"max_bounces": 0}, GLASS, [], ("No photon maps: Max Bounces is 0",)),
+        ({"integrator": Integrator.PATH_TRACING}, GLASS, [], ("No photon maps: path tracing",)),
+    ],
+)
+def test_maps_are_built_as_needed(fields, ball, maps, words):
+    settings = RenderSettings(photon_count=2000, **fields)
+    statistics = rendered(settings, ball)
+    assert maps_built(statistics) == maps
+    lines = explain_maps(settings, statistics)
+    assert len(lines) == len(words) and all(map(str.startswith, lines, words)), lines
+    assert (statistics.caustic_photons > 0) == ("caustic" in maps)
+    assert statistics.photons_emitted == 2000 * len(maps)
+
+
+def test_without_light_there_is_no_map():
+    settings = RenderSettings(photon_count=2000)
+    statistics = rendered(settings, power=0.0)
+    assert maps_built(statistics) == [] and statistics.photons_emitted == 0
+    assert explain_maps(settings, statistics) == (
+        "No global map: there is no light, or nothing that it falls on.",
+        "No caustic map: no focused light falls on a diffuse surface.",
+    )
+
+
+def test_before_the_first_pass_nothing_is_said():
+    picture = Picture(
+        scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], camera((0, -4, 2), (0, 0, 0), (8, 8))), RenderSettings()
+    )
+    assert explain_maps(picture.settings, picture.render.statistics()) == ()
