@@ -25,9 +25,12 @@ from photon_maps_native import (
 )
 
 from engine.passes import Pass
-from engine.settings import PixelFilter, RenderSettings
+from engine.settings import Integrator, PixelFilter, RenderSettings
 
 IDENTITY = np.eye(3, 4, dtype=np.float32)
+
+#: The methods that find all light there is.
+COMPLETE = (Integrator.PHOTON_MAP, Integrator.PATH_TRACING)
 
 
 def quad(center: Sequence[float], u: Sequence[float], v: Sequence[float]) -> Mesh:

@@ -9,7 +9,7 @@ from photon_maps_native import LightType, Mesh, PhotonArrays, Ray, SceneData, di
 
 from engine.passes import Pass
 from engine.settings import Filter, Integrator
-from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, quad, revolved, scene, sphere
+from tests.shapes import COMPLETE, IDENTITY, Picture, box, box_filtered, camera, lamp, quad, revolved, scene, sphere
 from tests.surfaces import fresnel, glass, material, mirror
 
 CAUSTIC_PHOTONS = 2
@@ -211,7 +211,7 @@ def test_a_flat_mirror_reflects_the_sun_to_the_floor() -> None:
     assert picture.pixels(Pass.CAUSTIC).mean((0, 1)) == pytest.approx(direct * np.array(color), rel=0.01)
 
 
-@pytest.mark.parametrize("integrator", list(Integrator))
+@pytest.mark.parametrize("integrator", COMPLETE)
 def test_a_mirror_lights_as_the_lamp_behind_it_would(integrator: Integrator) -> None:
     """The caustic of a mirror is the direct light of the mirrored lamp."""
     wall = quad((0, 0, 2), (0, 4, 0), (0, 0, 2))
@@ -232,7 +232,7 @@ def test_a_mirror_lights_as_the_lamp_behind_it_would(integrator: Integrator) -> 
     assert blocks[0] == pytest.approx(blocks[1], rel=0.05)
 
 
-@pytest.mark.parametrize("integrator", list(Integrator))
+@pytest.mark.parametrize("integrator", COMPLETE)
 def test_mirrors_and_glass_show_a_lamp_by_its_radiance(integrator: Integrator) -> None:
     power, side = 20.0, 3.0
     radiance = power / (np.pi * side**2)

@@ -14,7 +14,7 @@ from photon_maps_native import LightType, Mesh, Ray, SceneData, diffuse
 
 from engine.passes import Pass
 from engine.settings import Integrator
-from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
+from tests.shapes import COMPLETE, IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 from tests.surfaces import (
     WHITE,
     Surface,
@@ -87,7 +87,7 @@ def furnace(name: str) -> SceneData:
     return scene([room, *meshes], camera(eye, target, (32, 32), 0.55), [walls, *(material(s) for s in surfaces)])
 
 
-@pytest.mark.parametrize("integrator", list(Integrator))
+@pytest.mark.parametrize("integrator", COMPLETE)
 @pytest.mark.parametrize("name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.campaign) for n in FURNACES])
 def test_a_closure_vanishes_in_a_furnace(name: str, integrator: Integrator) -> None:
     """As Blender has it, glass changes the direction of light and not its radiance, so that this holds inside of it
@@ -152,7 +152,7 @@ def test_flux_lands_is_absorbed_or_escapes(kind: str, closure: str) -> None:
     assert (1 - FLOOR_ALBEDO) * landed == pytest.approx(np.mean(found.absorbed), rel=0.01, abs=1e-3 * found.emitted[0])
 
 
-@pytest.mark.parametrize("integrator", list(Integrator))
+@pytest.mark.parametrize("integrator", COMPLETE)
 def test_the_parts_of_a_picture_with_glass_add_up(integrator: Integrator) -> None:
     meshes = [
         quad((0, 0, -0.5), (2, 0, 0), (0, 2, 0)),
@@ -223,7 +223,7 @@ def means(name: str, roughness: float, integrator: Integrator) -> dict[Pass, flo
 @pytest.mark.parametrize("roughness", [0.2, 1.0])
 @pytest.mark.parametrize("name", COUNTED)
 def test_photons_and_paths_make_the_same_picture(name: str, roughness: float) -> None:
-    photons, paths = (means(name, roughness, integrator) for integrator in Integrator)
+    photons, paths = (means(name, roughness, integrator) for integrator in COMPLETE)
     assert photons[Pass.COMBINED] == pytest.approx(paths[Pass.COMBINED], rel=0.01)
     for buffer in (Pass.DIRECT, Pass.INDIRECT, Pass.CAUSTIC):
         assert paths[buffer] > 0

@@ -16,6 +16,7 @@ from engine.passes import Pass
 from engine.settings import Filter
 from tests.shapes import Picture, box_filtered, camera, lamp, quad, scene
 
+CAMPAIGN = pytest.mark.campaign
 ALBEDO = 0.6
 POWER = 100.0
 DIRECT_PHOTONS = 0
@@ -161,7 +162,7 @@ def test_direct_light_of_a_plane_is_the_formula(name: str, distance: float, scal
     assert pixels.mean() == pytest.approx(expected, rel=0.01)
 
 
-@pytest.mark.parametrize("scale", [0.01, 1.0, 100.0])
+@pytest.mark.parametrize("scale", [pytest.param(0.01, marks=CAMPAIGN), 1.0, pytest.param(100.0, marks=CAMPAIGN)])
 @pytest.mark.parametrize("distance", [0.8, 2.0, 5.0])
 @pytest.mark.parametrize("name", CASES)
 def test_photon_density_on_a_plane_is_the_formula(name: str, distance: float, scale: float) -> None:

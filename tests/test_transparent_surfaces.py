@@ -10,7 +10,7 @@ from photon_maps_native.shader import Input
 
 from engine.passes import Pass
 from engine.settings import Integrator
-from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
+from tests.shapes import COMPLETE, IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 from tests.surfaces import glass, material, mixed, transparent
 
 DIRECT_PHOTONS = 0
@@ -56,7 +56,7 @@ def test_the_shadow_of_transparent_sheets_is_their_product(kind: LightType, coun
     assert landed == pytest.approx(all_landed * passed, rel=0.02, abs=0.02 * (all_landed * passed).max())
 
 
-@pytest.mark.parametrize("integrator", list(Integrator))
+@pytest.mark.parametrize("integrator", COMPLETE)
 def test_an_invisible_object_vanishes(integrator: Integrator) -> None:
     """A wholly transparent ball changes nothing but which random numbers are drawn."""
     meshes = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), quad((0, 2, 2), (2, 0, 0), (0, 0, 2)), sphere(0.5, 16)]

@@ -62,7 +62,9 @@ def test_blenders_own_panels_are_shown(extension):
 def test_names_that_do_not_change(scene, extension):
     settings = scene.photon_maps
     numbered = {
-        "integrator": ["PHOTON_MAP", "PATH_TRACING"],
+        "integrator": ["PHOTON_MAP", "PATH_TRACING", "REGULAR_SHADING"],
+        "estimate": ["RADIUS", "NEAREST"],
+        "brdf_direction": ["PER_PHOTON", "MEAN"],
         "filter": ["NONE", "CONE", "GAUSSIAN", "EPANECHNIKOV"],
         "stop": ["PASSES", "TIME"],
         "pixel_filter": ["BOX", "GAUSSIAN", "BLACKMAN_HARRIS"],
@@ -72,8 +74,9 @@ def test_names_that_do_not_change(scene, extension):
         assert [(item.identifier, item.value) for item in items] == [
             (one, number) for number, one in enumerate(identifiers)
         ]
-    others = "use_auto photon_count estimate radius cone_k max_bounces seed passes time_limit use_progressive "
-    for name in (others + "pixel_filter_width pass_offset").split():
+    others = "use_auto photon_count nearest_count radius cone_k max_bounces seed passes time_limit use_progressive "
+    parts = "use_caustics use_indirect use_final_gather use_shadow_photons use_photon_guiding "
+    for name in (others + parts + "pixel_filter_width pass_offset").split():
         assert hasattr(settings, name)
     assert MANIFEST["version"] == extension.engine.summary.VERSION
     assert extension.engine.render_engine.PhotonMapsEngine.bl_label == MANIFEST["name"]

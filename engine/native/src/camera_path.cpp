@@ -62,7 +62,6 @@ void CameraPath::add_lamps(const SurfacePoint *hit) {
         // Light sampling would have found it from the origin, which may lie before transparent surfaces.
         float pdf = lamp.pdf;
         if (origin_.pdf > 0) {
-            constexpr float infinity = std::numeric_limits<float>::infinity();
             const Ray drawn{origin_.position, ray_.direction, 0, infinity, ray_.kinds};
             if (const auto there = pass_.lights.meet(lamp.source, drawn, true)) pdf = there->pdf;
         }

@@ -24,10 +24,6 @@ Vec3 albedo(const Closure &closure, Lobes lobes) {
     return sum;
 }
 
-bool is_lambertian(const Closure &closure) {
-    return closure.type == ClosureType::diffuse && closure.roughness < least_diffuse_roughness;
-}
-
 bool has_bumps(const Shading &shading, const Closure &closure) {
     return !(shading.smooth_normal == Vec3{}) && !(shading.smooth_normal == closure.normal);
 }
@@ -102,6 +98,10 @@ Choice choose(const Shading &shading, Lobes lobes, float u) {
 }
 
 }  // namespace
+
+bool is_lambertian(const Closure &closure) {
+    return closure.type == ClosureType::diffuse && closure.roughness < least_diffuse_roughness;
+}
 
 Lobes lobes_of(const Shading &shading) {
     Lobes lobes = 0;

@@ -87,6 +87,9 @@ struct ScatterSample {
     bool is_singular;
 };
 
+/// Whether a closure scatters evenly.
+bool is_lambertian(const Closure &closure);
+
 /// Returns the lobes that the closures have.
 Lobes lobes_of(const Shading &shading);
 

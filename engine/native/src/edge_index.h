@@ -52,7 +52,7 @@ class EdgeIndex {
     void visit_cells(Visit visit) const;
 
     std::vector<FeatureEdge> edges_;
-    float max_radius_ = std::numeric_limits<float>::infinity();
+    float max_radius_ = infinity;
     double inverse_cell_ = 0;
     std::vector<uint32_t> starts_;   ///< entries of bucket i are [starts_[i], starts_[i + 1])
     std::vector<uint32_t> entries_;  ///< edge indices by bucket

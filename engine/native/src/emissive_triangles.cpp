@@ -8,15 +8,12 @@ namespace photon_maps {
 
 namespace {
 
-/// A shadow ray stops short of the triangle by this share, so that it does not meet it.
-constexpr float shadow_end = 0.9999f;
-
 /// Points at which each side of a triangle of varying emission is looked at; fewer where there are many triangles.
 constexpr size_t most_points = 64, all_points = 100000;
 
 /// Radiance that every triangle of varying emission counts for at least, as a share of the mean over all: the points
 /// looked at may have missed what shines.
-constexpr double least_share = 0.02;
+constexpr double least_power_share = 0.02;
 
 /// Whether one of an instance's materials emits, so that its triangles need be looked at.
 bool emits_anywhere(const Scene &scene, const Instance &instance) {
@@ -99,7 +96,7 @@ void EmissiveTriangles::find_powers() {
         const Material &material = scene_.material(i, t);
         if (power > 0 && material.emits() && !material.traits.is_constant) {
             const auto own_area = static_cast<double>(area(scene_.world_triangle(i, t)));
-            cumulative_[e] = std::max(cumulative_[e], least_share * power * own_area / emitting_area);
+            cumulative_[e] = std::max(cumulative_[e], least_power_share * power * own_area / emitting_area);
         }
         cumulative_[e] = sum += cumulative_[e];
     }

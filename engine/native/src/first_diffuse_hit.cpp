@@ -21,7 +21,7 @@ bool first_diffuse_hit(const Scene &scene, const Ray &camera_ray, Sequence &sequ
         const auto u = sequence.next();
         if (u[3] < average(shading.transparency)) {
             state = passed(state);
-            ray = {hit.origin_towards(direction), direction, 0, std::numeric_limits<float>::infinity(), ray.kinds};
+            ray = {hit.origin_towards(direction), direction, 0, infinity, ray.kinds};
             continue;
         }
         const auto drawn = sample(shading, glossy_lobes, {u[0], u[1], u[2]}, Transport::radiance);

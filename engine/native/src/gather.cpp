@@ -19,8 +19,6 @@ Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 c
     return estimate;
 }
 
-bool is_lambertian(const Closure &closure) { return closure.type == ClosureType::diffuse && closure.roughness == 0; }
-
 /// The point as it is seen from its other side.
 SurfacePoint turned(const SurfacePoint &hit) {
     SurfacePoint back = hit;

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t fine = 32, coarse = 16;
 
 /// Points of a Fibonacci lattice on the square from which normals are drawn.
-constexpr size_t points = 377;
+constexpr size_t quadrature_points = 377;
 
 /// A position between two rows of a table.
 struct Between {
@@ -29,11 +29,11 @@ struct Between {
 };
 
 /// A table over roughness and cosine.
-struct Table {
+struct EnergyTable {
     size_t size;
     std::vector<float> values, averages;
 
-    explicit Table(size_t rows) : size(rows), values(rows * rows), averages(rows) {}
+    explicit EnergyTable(size_t rows) : size(rows), values(rows * rows), averages(rows) {}
     float &at(size_t rough, size_t cosine) { return values[rough * size + cosine]; }
     float at(size_t rough, size_t cosine) const { return values[rough * size + cosine]; }
     float look_up(float roughness, float cosine) const {
@@ -45,7 +45,7 @@ struct Table {
         const Between r(roughness, size);
         return r.mix(averages[r.below], averages[r.above]);
     }
-    /// Integrates 2 cos times the values, which are linear between the points.
+    /// Integrates 2 cos times the values, which are linear between the quadrature_points.
     void average() {
         const float step = 1 / static_cast<float>(size - 1);
         for (size_t rough = 0; rough < size; ++rough)
@@ -61,7 +61,7 @@ float grid_point(size_t index, size_t size) {
 }
 
 /// What a facet does to light from one direction.
-struct Facet {
+struct SampledFacet {
     float weight;      ///< share of the light that it meets
     float cosine;      ///< between the light and its normal
     float height;      ///< cosine of its normal to the surface's
@@ -71,18 +71,18 @@ struct Facet {
 /// Light from one direction on a rough surface.
 struct Facets {
     float cosine, alpha;
-    std::array<Facet, points> facets;
+    std::array<SampledFacet, quadrature_points> facets;
 
     Facets(size_t rough, size_t direction, size_t size)
         : cosine(grid_point(direction, size)), alpha(square(grid_point(rough, size))) {
         const Vec3 view{std::sqrt(1 - square(cosine)), 0, cosine};
-        for (size_t i = 0; i < points; ++i) {
+        for (size_t i = 0; i < quadrature_points; ++i) {
             // Facets that are seen at grazing angles lie at the far end: there the points are dense.
-            const float t = (static_cast<float>(i) + 0.5f) / points;
-            const float turn = static_cast<float>(i) * 233 / points;  // neighbours in Fibonacci's sequence
+            const float t = (static_cast<float>(i) + 0.5f) / quadrature_points;
+            const float turn = static_cast<float>(i) * 233 / quadrature_points;  // neighbours in Fibonacci's sequence
             const Vec3 normal = sample_visible_normal(view, alpha, turn - std::floor(turn), 1 - square(1 - t));
             const float c = std::min(dot(view, normal), 1.0f);
-            facets[i] = {2 * (1 - t) / points, c, normal.z, unshadowed(2 * c * normal.z - cosine)};
+            facets[i] = {2 * (1 - t) / quadrature_points, c, normal.z, unshadowed(2 * c * normal.z - cosine)};
         }
     }
 
@@ -94,16 +94,16 @@ struct Facets {
     template <typename Value>
     float mean(Value value) const {
         float sum = 0;
-        for (const Facet &facet : facets) sum += facet.weight * value(facet);
+        for (const SampledFacet &facet : facets) sum += facet.weight * value(facet);
         return sum;
     }
 
     float reflected() const {
-        return mean([](const Facet &facet) { return facet.reflection; });
+        return mean([](const SampledFacet &facet) { return facet.reflection; });
     }
 
     float scattered_by_glass(float eta) const {
-        return mean([&](const Facet &facet) {
+        return mean([&](const SampledFacet &facet) {
             const DielectricFresnel fresnel = fresnel_dielectric(facet.cosine, eta);
             const float refracted = facet.height * (facet.cosine / eta - fresnel.cosine) - cosine / eta;
             return fresnel.reflectance * facet.reflection + (1 - fresnel.reflectance) * unshadowed(-refracted);
@@ -113,11 +113,11 @@ struct Facets {
     /// The mean of a function of the cosine; facets that reflect into the surface count as 0.
     template <typename Rise>
     float mean_rise(Rise rise) const {
-        return mean([&](const Facet &facet) { return facet.reflection > 0 ? rise(facet.cosine) : 0.0f; });
+        return mean([&](const SampledFacet &facet) { return facet.reflection > 0 ? rise(facet.cosine) : 0.0f; });
     }
 };
 
-/// Calls `fill(rough, direction, facets)` for all points of a table.
+/// Calls `fill(rough, direction, facets)` for all quadrature_points of a table.
 template <typename Fill>
 void for_each_point(size_t size, Fill fill) {
     for (size_t rough = 0; rough < size; ++rough)
@@ -125,8 +125,8 @@ void for_each_point(size_t size, Fill fill) {
             fill(rough, direction, Facets(rough, direction, size));
 }
 
-Table make_reflection() {
-    Table table(fine);
+EnergyTable make_reflection() {
+    EnergyTable table(fine);
     for_each_point(fine, [&](size_t rough, size_t direction, const Facets &facets) {
         table.at(rough, direction) = facets.reflected();
     });
@@ -134,8 +134,8 @@ Table make_reflection() {
     return table;
 }
 
-Table make_schlick() {
-    Table table(coarse);
+EnergyTable make_schlick() {
+    EnergyTable table(coarse);
     for_each_point(coarse, [&](size_t rough, size_t direction, const Facets &facets) {
         table.at(rough, direction) = facets.mean_rise(schlick_rise);
     });
@@ -144,9 +144,9 @@ Table make_schlick() {
 
 /// Tables for indices of refraction: sqrt((eta - 1) / (eta + 1)) goes from 0 to 1 in equal steps.
 struct DielectricTables {
-    std::vector<Table> into, out_of, rise;
+    std::vector<EnergyTable> into, out_of, rise;
 
-    DielectricTables() : into(coarse, Table(coarse)), out_of(into), rise(into) {
+    DielectricTables() : into(coarse, EnergyTable(coarse)), out_of(into), rise(into) {
         for_each_point(coarse, [&](size_t rough, size_t direction, const Facets &facets) {
             for (size_t slice = 0; slice < coarse; ++slice) {
                 const float eta = ior_of_f0(square(square(std::min(grid_point(slice, coarse), 0.99f))));
@@ -157,8 +157,8 @@ struct DielectricTables {
                     [&](float cosine) { return fresnel_rise(fresnel_dielectric(cosine, eta).reflectance, eta); });
             }
         });
-        for (std::vector<Table> *tables : {&into, &out_of})
-            for (Table &table : *tables) table.average();
+        for (std::vector<EnergyTable> *tables : {&into, &out_of})
+            for (EnergyTable &table : *tables) table.average();
     }
 };
 
@@ -172,26 +172,26 @@ Between between_indices(float eta) { return {std::sqrt(std::abs((eta - 1) / (eta
 }  // namespace
 
 GgxAlbedo ggx_reflection_albedo(float roughness, float cosine) {
-    static const Table table = make_reflection();
+    static const EnergyTable table = make_reflection();
     return {table.look_up(roughness, cosine), table.look_up_average(roughness)};
 }
 
 GgxAlbedo ggx_glass_albedo(float roughness, float cosine, float eta) {
-    const std::vector<Table> &tables = eta < 1 ? dielectric_tables().out_of : dielectric_tables().into;
+    const std::vector<EnergyTable> &tables = eta < 1 ? dielectric_tables().out_of : dielectric_tables().into;
     const Between z = between_indices(eta);
-    const Table &below = tables[z.below], &above = tables[z.above];
+    const EnergyTable &below = tables[z.below], &above = tables[z.above];
     return {z.mix(below.look_up(roughness, cosine), above.look_up(roughness, cosine)),
             z.mix(below.look_up_average(roughness), above.look_up_average(roughness))};
 }
 
 float ggx_fresnel_rise(float roughness, float cosine, float eta) {
-    const std::vector<Table> &tables = dielectric_tables().rise;
+    const std::vector<EnergyTable> &tables = dielectric_tables().rise;
     const Between z = between_indices(eta);
     return z.mix(tables[z.below].look_up(roughness, cosine), tables[z.above].look_up(roughness, cosine));
 }
 
 float ggx_schlick_rise(float roughness, float cosine) {
-    static const Table table = make_schlick();
+    static const EnergyTable table = make_schlick();
     return table.look_up(roughness, cosine);
 }
 

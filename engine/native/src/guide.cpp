@@ -88,7 +88,7 @@ size_t PhotonImportance::memory_bytes() const {
 Guide::Guide(const IncomingFlux &incoming, const Shading &shading) : frame_(incoming.normal) {
     const float prior = prior_photons * incoming.total / static_cast<float>(incoming.photons);
     const bool weighs_closures = std::ranges::any_of(shading.scattering(), [](const Closure &closure) {
-        return closure.type == ClosureType::sheen || (closure.type == ClosureType::diffuse && closure.roughness > 0);
+        return (closure.type == ClosureType::diffuse && !is_lambertian(closure)) || closure.type == ClosureType::sheen;
     });
     for (size_t cell = 0; cell < weights_.size(); ++cell) {
         float weight = incoming.flux[cell] + prior;

@@ -11,61 +11,61 @@ namespace {
 
 /// A vector in the tangent plane, in radii.
 template <typename T>
-struct Vec2 {
+struct Point2 {
     T x, y;
 };
 
 template <typename T>
-T cross(Vec2<T> a, Vec2<T> b) {
+T cross(Point2<T> a, Point2<T> b) {
     return a.x * b.y - a.y * b.x;
 }
 template <typename T>
-T dot(Vec2<T> a, Vec2<T> b) {
+T dot(Point2<T> a, Point2<T> b) {
     return a.x * b.x + a.y * b.y;
 }
 template <typename T>
-Vec2<T> operator+(Vec2<T> a, Vec2<T> b) {
+Point2<T> operator+(Point2<T> a, Point2<T> b) {
     return {a.x + b.x, a.y + b.y};
 }
 template <typename T>
-Vec2<T> operator-(Vec2<T> a, Vec2<T> b) {
+Point2<T> operator-(Point2<T> a, Point2<T> b) {
     return {a.x - b.x, a.y - b.y};
 }
 template <typename T>
-Vec2<T> operator*(Vec2<T> a, T s) {
+Point2<T> operator*(Point2<T> a, T s) {
     return {a.x * s, a.y * s};
 }
 template <typename T>
-Vec2<T> normalize(Vec2<T> a) {
+Point2<T> normalize(Point2<T> a) {
     return a * (1 / std::sqrt(dot(a, a)));
 }
 
 /// A point or vector of space relative to a kernel's centre, exactly: an edge may be longer than a radius by far.
-struct Double3 {
+struct Precise3 {
     double x, y, z;
 };
-Double3 exact_difference(Vec3 a, Vec3 b) { return {double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z}; }
-double dot(Double3 a, Double3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double dot(Double3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Precise3 exact_difference(Vec3 a, Vec3 b) { return {double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z}; }
+double dot(Precise3 a, Precise3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot(Precise3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Returns whether an edge from a to b, relative to the kernel's centre, comes near it in its plane.
-bool bounds_surface(Double3 a, Double3 b, Vec3 normal, double radius) {
+bool bounds_surface(Precise3 a, Precise3 b, Vec3 normal, double radius) {
     // Most edges lie wholly above or below what counts.
     const double height_a = dot(a, normal), height_b = dot(b, normal), highest = plane_tolerance * radius;
     if (std::min(height_a, height_b) >= highest || std::max(height_a, height_b) <= -highest) return false;
-    const Double3 ab{b.x - a.x, b.y - a.y, b.z - a.z};
+    const Precise3 ab{b.x - a.x, b.y - a.y, b.z - a.z};
     const double squared = dot(ab, ab);
     const double s = squared > 0 ? std::clamp(-dot(a, ab) / squared, 0.0, 1.0) : 0.0;
-    const Double3 closest{a.x + s * ab.x, a.y + s * ab.y, a.z + s * ab.z};
+    const Precise3 closest{a.x + s * ab.x, a.y + s * ab.y, a.z + s * ab.z};
     return dot(closest, closest) < radius * radius && std::abs(height_a + s * (height_b - height_a)) < highest;
 }
 
 /// Clips the line from a to b to the unit disc and adds what is left as a barrier.
 /// @param tolerance distance below which rounding decides on which side of the line the centre lies
-void add_barrier(Vec2<double> a, Vec2<double> b, double tolerance, std::vector<Barrier> &barriers) {
+void add_barrier(Point2<double> a, Point2<double> b, double tolerance, std::vector<Barrier> &barriers) {
     const double length = std::sqrt(dot(b - a, b - a));
     if (!(length > 0)) return;
-    Vec2<double> along = (b - a) * (1 / length);
+    Point2<double> along = (b - a) * (1 / length);
     double distance = cross(a, along);
     double from = dot(a, along), to = from + length;
     if (std::abs(distance) < tolerance) {
@@ -85,28 +85,28 @@ void add_barrier(Vec2<double> a, Vec2<double> b, double tolerance, std::vector<B
     to = std::min(to, reach);
     // Nothing is left, or next to nothing, of which single precision would not keep the direction.
     if (!(to - from > 1e-6 * (distance + std::max(std::abs(from), std::abs(to))))) return;
-    const Vec2<double> foot{along.y * distance, -along.x * distance};
-    const Vec2<double> start = foot + along * from, end = foot + along * to;
+    const Point2<double> foot{along.y * distance, -along.x * distance};
+    const Point2<double> start = foot + along * from, end = foot + along * to;
     barriers.push_back({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(end.x),
                         static_cast<float>(end.y)});
 }
 
 /// A barrier's line: all points whose product with `inverse` is 1.
 struct Line {
-    Vec2<float> a, b;     ///< ends, counter-clockwise
-    Vec2<float> along;    ///< unit vector from a to b
-    float distance;       ///< from the centre
-    Vec2<float> inverse;  ///< unit vector to the foot of the perpendicular, over the distance
+    Point2<float> a, b;     ///< ends, counter-clockwise
+    Point2<float> along;    ///< unit vector from a to b
+    float distance;         ///< from the centre
+    Point2<float> inverse;  ///< unit vector to the foot of the perpendicular, over the distance
 
     explicit Line(const Barrier &barrier)
         : a{barrier.ax, barrier.ay},
           b{barrier.bx, barrier.by},
           along(normalize(b - a)),
           distance(cross(a, along)),
-          inverse(Vec2<float>{along.y, -along.x} * (1 / distance)) {}
+          inverse(Point2<float>{along.y, -along.x} * (1 / distance)) {}
 
     /// Returns where the ray in a direction meets the line.
-    Vec2<float> meet(Vec2<float> direction) const { return direction * (1 / dot(inverse, direction)); }
+    Point2<float> meet(Point2<float> direction) const { return direction * (1 / dot(inverse, direction)); }
 };
 
 /// Returns the integral of Kernel::wedge(s) over the angle from the foot of the perpendicular (length h) to a point x
@@ -141,26 +141,26 @@ float wedge_integral(float h, float x, const Kernel &kernel) {
 }
 
 /// Returns the part of the kernel's integral that lies beyond a line, between two points on it.
-float lost_beyond(const Line &line, Vec2<float> from, Vec2<float> to, float full_wedge, const Kernel &kernel) {
+float lost_beyond(const Line &line, Point2<float> from, Point2<float> to, float full_wedge, const Kernel &kernel) {
     const float angle = std::atan2(cross(from, to), dot(from, to));
     return full_wedge * angle - (wedge_integral(line.distance, dot(to, line.along), kernel) -
                                  wedge_integral(line.distance, dot(from, line.along), kernel));
 }
 
 /// Returns the line that is met first in a direction.
-const Line *nearest(std::span<const Line *const> lines, Vec2<float> direction) {
+const Line *nearest(std::span<const Line *const> lines, Point2<float> direction) {
     return *std::ranges::max_element(lines, {}, [&](const Line *line) { return dot(line->inverse, direction); });
 }
 
 /// Returns what is lost between two directions, both of which meet all the lines. The line met first at either end is
 /// met first all the way if it is the same: two lines cross once. Else they cross between, and the parts are simpler.
-float lost_between(std::span<const Line *const> lines, Vec2<float> from, Vec2<float> to, float full_wedge,
+float lost_between(std::span<const Line *const> lines, Point2<float> from, Point2<float> to, float full_wedge,
                    const Kernel &kernel) {
     const Line *first = nearest(lines, from), *last = nearest(lines, to);
     if (first != last) {
         constexpr float rounding = 1e-6f;
-        const Vec2<float> difference = first->inverse - last->inverse;
-        Vec2<float> crossing = normalize(Vec2<float>{difference.y, -difference.x});
+        const Point2<float> difference = first->inverse - last->inverse;
+        Point2<float> crossing = normalize(Point2<float>{difference.y, -difference.x});
         if (dot(crossing, from + to) < 0) crossing = crossing * -1.0f;
         if (cross(from, crossing) > rounding && cross(crossing, to) > rounding) {
             return lost_between(lines, from, crossing, full_wedge, kernel) +
@@ -192,20 +192,20 @@ std::optional<float> lost_to_pair(std::span<const Barrier> barriers, float full_
 /// ends the nearest barrier bounds what is seen.
 float lost_to_all(std::span<const Barrier> barriers, float full_wedge, const Kernel &kernel) {
     const std::vector<Line> lines(barriers.begin(), barriers.end());
-    std::vector<Vec2<float>> ends;
+    std::vector<Point2<float>> ends;
     for (const Line &line : lines) {
         ends.push_back(normalize(line.a));
         ends.push_back(normalize(line.b));
     }
-    const auto turn = [](Vec2<float> d) { return std::copysign(1 - d.x, d.y); };  // grows as the angle does
+    const auto turn = [](Point2<float> d) { return std::copysign(1 - d.x, d.y); };  // grows as the angle does
     std::ranges::sort(ends, {}, turn);
 
     float lost = 0;
     std::vector<const Line *> active;
     for (size_t i = 0; i < ends.size(); ++i) {
-        const Vec2<float> from = ends[i], to = ends[(i + 1) % ends.size()];
+        const Point2<float> from = ends[i], to = ends[(i + 1) % ends.size()];
         if (!(cross(from, to) > 0)) continue;  // nothing, or a half circle and more, which no barrier spans
-        const Vec2<float> middle = from + to;
+        const Point2<float> middle = from + to;
         active.clear();
         for (const Line &line : lines) {
             if (cross(line.a, middle) > 0 && cross(middle, line.b) > 0) active.push_back(&line);
@@ -227,11 +227,11 @@ KernelRegion::KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Ke
     // Rounding of p, and of the ray that found it, is proportional to its coordinates.
     const double tolerance = std::min(1e-6 + 4e-7 * max_component(abs(p)) / radius, 0.01);
     const Frame frame(normal);
-    const auto project = [&](Double3 q) { return Vec2<double>{dot(q, frame.x) / radius, dot(q, frame.y) / radius}; };
+    const auto project = [&](Precise3 q) { return Point2<double>{dot(q, frame.x) / radius, dot(q, frame.y) / radius}; };
     for (const uint32_t candidate : candidates) {
         const FeatureEdge &edge = edges.edge(candidate);
         if (!(std::abs(dot(edge.normal, normal)) > normal_tolerance)) continue;
-        const Double3 a = exact_difference(edge.a, p), b = exact_difference(edge.b, p);
+        const Precise3 a = exact_difference(edge.a, p), b = exact_difference(edge.b, p);
         if (!bounds_surface(a, b, normal, radius)) continue;
         add_barrier(project(a), project(b), tolerance, barriers_);
         if (barriers_.size() > max_barriers) {

@@ -8,11 +8,6 @@ namespace photon_maps {
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-/// A shadow ray stops short of what it aims at by this share, so that it does not meet the lamp's own housing.
-constexpr float shadow_end = 0.9999f;
-
 /// Share of a spot's intensity in a unit direction of travel: a smooth step in the cosine over `spot_blend` of the
 /// cone, as Blender draws it. Non-uniform scale of the lamp stretches the cone.
 float spot_attenuation(const Lamp &lamp, Vec3 direction) {

@@ -87,7 +87,7 @@ std::optional<LightSample> Lights::sample_world(Vec3 normal, bool both_sides, co
     const float pdf = world_pdf(direction, normal, both_sides);
     if (!(pdf > 0)) return {};
     RayState ray = receiver;
-    ray.length = std::numeric_limits<float>::infinity();
+    ray.length = infinity;
     return LightSample{direction, ray.length, world_.radiance(direction, ray) / pdf, pdf, world_.visibility()};
 }
 

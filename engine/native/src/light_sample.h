@@ -9,6 +9,9 @@
 
 namespace photon_maps {
 
+/// A shadow ray stops short of what it aims at by this share, so that it does not meet that or a lamp's housing.
+constexpr float shadow_end = 0.9999f;
+
 /// A direction towards a light, chosen with a known density.
 struct LightSample {
     Vec3 direction;       ///< unit

@@ -10,8 +10,6 @@ namespace photon_maps {
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 /// A photon while the tree is built.
 struct Item {
     std::array<float, 3> position;

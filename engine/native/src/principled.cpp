@@ -9,9 +9,9 @@ namespace {
 /// Weights below this are left out.
 constexpr float least_weight = 1e-5f;
 
-float usable(float x, float greatest = 1) { return x > 0 ? std::min(x, greatest) : 0.0f; }
-Vec3 usable(Vec3 color, float greatest = 1) {
-    return {usable(color.x, greatest), usable(color.y, greatest), usable(color.z, greatest)};
+float bounded(float x, float greatest = 1) { return x > 0 ? std::min(x, greatest) : 0.0f; }
+Vec3 bounded(Vec3 color, float greatest = 1) {
+    return {bounded(color.x, greatest), bounded(color.y, greatest), bounded(color.z, greatest)};
 }
 
 /// What a layer that reflects `reflected` leaves of `weight`, which is what met it.
@@ -31,11 +31,11 @@ Vec3 coat_transmittance(Vec3 tint, float cosine, float ior) {
 
 /// Adds the sheen and the coat; returns what they leave to the layers below.
 Vec3 add_upper_layers(Shading &shading, Vec3 weight, const Principled &principled) {
-    const float sheen = usable(principled.sheen), coat = usable(principled.coat);
+    const float sheen = bounded(principled.sheen), coat = bounded(principled.coat);
     if (sheen > least_weight) {
         const Vec3 normal = mix(principled.normal, principled.coat_normal, coat);
         const float size = length(normal);
-        const Vec3 reflected = add_sheen(shading, weight * usable(principled.sheen_tint) * sheen,
+        const Vec3 reflected = add_sheen(shading, weight * bounded(principled.sheen_tint) * sheen,
                                          principled.sheen_roughness, size > 0 ? normal / size : shading.normal);
         weight = below(weight, reflected);
     }
@@ -43,7 +43,7 @@ Vec3 add_upper_layers(Shading &shading, Vec3 weight, const Principled &principle
         const float ior = std::max(principled.coat_ior, 1.0f);
         weight = below(weight, add_specular(shading, weight * coat, white * f0_of_ior(ior), principled.coat_roughness,
                                             ior, principled.coat_normal, true));
-        const Vec3 tint = usable(principled.coat_tint);
+        const Vec3 tint = bounded(principled.coat_tint);
         if (!(tint == white)) {
             const float cosine = std::abs(dot(shading.outgoing, principled.coat_normal));
             weight *= mix(white, coat_transmittance(tint, cosine, ior), coat);
@@ -64,15 +64,15 @@ float specular_ior(const Principled &principled, float &f0) {
 }  // namespace
 
 void add_principled(Shading &shading, Vec3 weight, const Principled &principled, bool multiple_scattering) {
-    weight = usable(weight);
-    const float alpha = usable(principled.alpha);
+    weight = bounded(weight);
+    const float alpha = bounded(principled.alpha);
     shading.transparency += weight * (1 - alpha);
     weight = add_upper_layers(shading, weight * alpha, principled);
-    shading.emission += weight * usable(principled.emission, std::numeric_limits<float>::max());
+    shading.emission += weight * bounded(principled.emission, std::numeric_limits<float>::max());
 
     // Metal, glass and the dielectric share what is left.
-    const Vec3 base = usable(principled.base_color), specular_tint = usable(principled.specular_tint, 1e3f);
-    const float metallic = usable(principled.metallic), transmission = usable(principled.transmission);
+    const Vec3 base = bounded(principled.base_color), specular_tint = bounded(principled.specular_tint, 1e3f);
+    const float metallic = bounded(principled.metallic), transmission = bounded(principled.transmission);
     if (metallic > least_weight) {
         add_metallic(shading, weight * metallic, base, specular_tint, principled.roughness, principled.normal,
                      multiple_scattering);

@@ -56,8 +56,7 @@ struct Instance {
 
 /// An axis-aligned box.
 struct Bounds {
-    Vec3 lower{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-               std::numeric_limits<float>::infinity()};
+    Vec3 lower{infinity, infinity, infinity};
     Vec3 upper = -lower;
 
     void add(Vec3 p) {
@@ -73,7 +72,7 @@ struct Bounds {
 /// A ray from a point; `direction` need not be a unit vector, distances count in its length.
 struct Ray {
     Vec3 origin, direction;
-    float near = 0, far = std::numeric_limits<float>::infinity();
+    float near = 0, far = infinity;
     uint32_t kinds = ~0u;  ///< bits 1 << pm_ray: surfaces that are visible to none of them are passed through
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 /// Rough glass refracts at facets that are turned, even where a smooth one does not, and the other way round: its
 /// estimates stay this far from 0, lest sampling leave that out.
-constexpr float least_share = 0.05f;
+constexpr float least_lobe_share = 0.05f;
 
 /// A component that is no number is 0.
 float usable(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
@@ -92,7 +92,7 @@ Vec3 finish_transmission(const Shading &shading, Closure &closure, Vec3 average_
     const bool is_glass = closure.type == ClosureType::glass;
     const bool is_rough = !is_smooth(closure);
     float reflected = is_glass ? average(shares.reflectance) : 0.0f;
-    if (is_glass && is_rough) reflected = std::clamp(reflected, least_share, 1 - least_share);
+    if (is_glass && is_rough) reflected = std::clamp(reflected, least_lobe_share, 1 - least_lobe_share);
     const float transmitted = is_rough || shares.cosine_behind > 0 ? 1 - reflected : 0.0f;
     closure.reflected = closure.weight * reflected;
     closure.transmitted = closure.weight * closure.tint * transmitted;

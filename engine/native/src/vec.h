@@ -11,6 +11,7 @@
 namespace photon_maps {
 
 constexpr float pi = std::numbers::pi_v<float>;
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A point, a direction or an RGB triple.
 struct Vec3 {

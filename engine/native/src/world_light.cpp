@@ -12,7 +12,7 @@ RayState ray_of(pm_ray kind) {
     RayState ray;
     ray.kinds = 1u << kind;
     ray.depth = 1;
-    ray.length = std::numeric_limits<float>::infinity();
+    ray.length = infinity;
     if (kind == PM_RAY_DIFFUSE) ray.diffuse_depth = 1;
     if (kind == PM_RAY_GLOSSY) ray.glossy_depth = 1;
     if (kind == PM_RAY_TRANSMISSION) ray.transmission_depth = 1;
