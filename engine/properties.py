@@ -130,8 +130,8 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     )
     brdf_direction: EnumProperty(
         name="Scatter By",
-        description="By which direction a surface scatters the light of photons: a mean one is faster where surfaces are "
-        "not matte, and slightly wrong there",
+        description="By which direction a surface scatters the light of photons: a mean one is faster where "
+        "surfaces are not matte, and slightly wrong there",
         items=BRDF_DIRECTIONS,
         default=_DEFAULTS.brdf_direction.name,
     )
