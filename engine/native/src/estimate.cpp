@@ -170,9 +170,12 @@ Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Qu
 }
 
 Kernel kernel_of_nearest(const PhotonMap &map, const Query &query, size_t count, const Kernel &largest) {
+    const float next = radius_holding(map, query, count + 1, largest.radius);
+    if (!(next < largest.radius)) return largest;
+    constexpr float short_of_it = 1 - 1e-6f;  // whatever the rounding, it is outside
+    constexpr float least_share = 1e-6f;      // photons may lie on each other
     Kernel kernel = largest;
-    constexpr float least_share = 1e-6f;  // photons may lie on each other
-    kernel.radius = std::max(radius_holding(map, query, count + 1, largest.radius), least_share * largest.radius);
+    kernel.radius = std::max(next * short_of_it, least_share * largest.radius);
     return kernel;
 }
 

@@ -19,9 +19,10 @@ constexpr float prior_photons = 0.5f;
 /// Normals that are told apart: five levels along each octahedral coordinate, so that the axes are among them.
 constexpr int normal_levels = 5;
 
-/// A normal as one of those that are told apart.
-uint32_t normal_level(Vec3 normal) {
-    const uint32_t packed = pack_direction(normal);
+/// A normal, as photons have it, as one of those that are told apart. Not one in full precision: by the sign of what
+/// should be zero the octahedron has -z in either of four corners.
+uint32_t normal_level(uint32_t packed_normal) {
+    const uint32_t packed = pack_direction(normalize(unpack_normal(packed_normal)));
     const auto level = [](uint32_t v) { return (v * (normal_levels - 1) + 32767) / 65534; };
     return level(packed & 0xffff) * normal_levels + level(packed >> 16);
 }
@@ -57,7 +58,7 @@ Vec3 direction_in_cell(size_t cell, float u, float v) {
 
 void PhotonImportance::add(std::span<const Photon> photons) {
     for (const Photon &photon : photons) {
-        const uint32_t level = normal_level(normalize(unpack_normal(photon.normal)));
+        const uint32_t level = normal_level(photon.normal);
         const uint64_t place = place_of(photon.position, cube_size_, level);
         const auto [entry, is_new] = index_.try_emplace(place, static_cast<uint32_t>(places_.size()));
         if (is_new) places_.push_back({normal_of_level(level)});
@@ -75,7 +76,8 @@ const IncomingFlux *PhotonImportance::around(const SurfacePoint &point, float u,
     constexpr uint32_t enough = 16;
     const Frame frame(point.normal);
     const Vec3 near = point.position + (frame.x * (u - 0.5f) + frame.y * (v - 0.5f)) * cube_size_;
-    const auto entry = index_.find(place_of(near, cube_size_, normal_level(point.normal)));
+    const uint32_t level = normal_level(pack_normal(point.normal, 0));
+    const auto entry = index_.find(place_of(near, cube_size_, level));
     if (entry == index_.end()) return nullptr;
     const IncomingFlux &incoming = places_[entry->second];
     return incoming.photons >= enough && incoming.total > 0 ? &incoming : nullptr;

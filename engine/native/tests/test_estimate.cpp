@@ -224,10 +224,58 @@ void check_radius_holding(test::Checks &checks) {
     checks.near(double{radius_holding(PhotonMap(), {{0, 0, 0}, up, up}, 1, 0.5f)}, 0.5, 0, "no photons");
 }
 
+/// The nearest photons by brute force: so many count and not one more, whatever the rounding; and their estimate.
+void check_kernel_of_nearest(test::Checks &checks) {
+    std::mt19937 random(29);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    std::vector<Photon> photons;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 normal = i % 5 == 0 ? -up : up;
+        photons.push_back(
+            {{uniform(random), uniform(random), 0}, {1, 1, 1}, pack_normal(normal, 0), pack_direction(-up)});
+    }
+    const PhotonMap map(photons, 1, nullptr);
+    for (const size_t count : {1, 2, 10, 100, 1000}) {
+        double mean = 0;
+        int fewer = 0;
+        constexpr int rounds = 2000;
+        for (int round = 0; round < rounds; ++round) {
+            const Query query{{0.6f * uniform(random), 0.6f * uniform(random), 0}, up, up};
+            const Kernel largest{PM_FILTER_NONE, 1.5f, 1};
+            const Kernel kernel = kernel_of_nearest(map, query, count, largest);
+            const Estimate found = estimate_photons(map, EdgeIndex(), query, kernel);
+            mean += double{found.value.x} / rounds;
+            checks.that(found.photons <= count, "no more than the nearest photons");
+            fewer += found.photons < count;
+            if (round >= 20) continue;
+            std::vector<float> distances;
+            for (const Photon &photon : photons)
+                if (unpack_normal(photon.normal).z > 0) distances.push_back(length(photon.position - query.position));
+            std::ranges::sort(distances);
+            checks.near(double{kernel.radius}, double{distances[count]}, 2e-6 * double{distances[count]},
+                        "as large as the next is far");
+        }
+        checks.that(fewer < 10, "no fewer, but where the last and the next are equally far");
+        // Four fifths of 20000 photons on four square metres. The nearest one alone has no bounded variance.
+        if (count >= 10) checks.near(mean, 4000, 80, "the mean of " + std::to_string(count) + " nearest");
+    }
+
+    // Where they are too few, and where they lie on each other.
+    const Kernel largest{PM_FILTER_CONE, 0.5f, 1.1f};
+    const Query query{{0, 0, 0}, up, up};
+    const Kernel all = kernel_of_nearest(map, query, 30000, largest);
+    checks.that(all.radius == largest.radius && all.filter == largest.filter && all.cone_k == largest.cone_k,
+                "too few photons: the largest kernel");
+    const std::vector<Photon> heap(100, {{0, 0, 0}, {1, 1, 1}, pack_normal(up, 0), pack_direction(-up)});
+    const Kernel least = kernel_of_nearest(PhotonMap(heap, 1, nullptr), query, 10, largest);
+    checks.that(least.radius > 0 && least.radius < 1e-5f, "photons on each other: a small kernel, but one");
+}
+
 }  // namespace
 
 int main() {
     test::Checks checks;
+    check_kernel_of_nearest(checks);
     check_against_brute_force(checks);
     check_where_surfaces_end(checks);
     check_shading_normals(checks);
