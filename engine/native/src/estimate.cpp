@@ -54,10 +54,12 @@ struct Sum {
 /// geometric cosine.
 Vec3 scattered_share(const Query &query, Vec3 incoming) {
     constexpr float least_cosine = 1e-6f;
-    const float cosine = std::max(dot(incoming, query.normal), least_cosine);
-    const Vec3 scattered = evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance);
-    // Bounded as shading_ratio is, for closures of any colour: scattered / cosine is below weight / pi otherwise.
-    return min(scattered / cosine, albedo(*query.shading, diffuse_reflection) * (max_shading_ratio / pi));
+    float cosine = std::max(dot(incoming, query.normal), least_cosine);
+    // The ratio of the cosines is bounded as shading_ratio is, and nothing else: sheen seen from the side has no bound.
+    for (const Closure &closure : query.shading->scattering())
+        if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen)
+            cosine = std::max(cosine, dot(incoming, closure.normal) / max_shading_ratio);
+    return evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance) / cosine;
 }
 
 /// What a query sums over the photons around it; called with runs of photons.

@@ -123,7 +123,8 @@ std::optional<ScatterSample> sample_guided(const Guide &guide, const Shading &sh
     ScatterSample drawn{};
     if (u[2] < guided_share) {
         drawn.direction = guide.sample(u[0], u[1]);
-        drawn.lobe = diffuse_reflection;
+        // Its hemisphere is about one of few normals, and may reach below the surface.
+        drawn.lobe = dot(drawn.direction, shading.normal) > 0 ? diffuse_reflection : diffuse_transmission;
     } else {
         const float left = (u[2] - guided_share) / (1 - guided_share);
         const auto unguided = sample(shading, diffuse_lobes, {u[0], u[1], left}, Transport::radiance);
