@@ -94,9 +94,7 @@ def test_caustics_are_counted_once(method: str) -> None:
     """A glass ball and a metal ring: what the photons bring to the floor, and once more to what the rays reach."""
     data, settings = CAUSTIC.data(), {"max_bounces": 32, "photon_count": 1 << 15}
     data.camera = replace(data.camera, resolution=(64, 64), region=(0, 0, 64, 64))
-    photons, gather = (
-        Picture(data, box_filtered(**settings, **method)).run(12) for method in ({}, METHODS[method])
-    )
+    photons, gather = (Picture(data, box_filtered(**settings, **method)).run(12) for method in ({}, METHODS[method]))
     reference, _ = CAUSTIC.reference()
     kept = blocks(without_lamp(reference).astype(float)[..., None], size=4)[..., 0] == 1
     expected = blocks(reference, size=4)[kept].mean(0)
@@ -173,7 +171,7 @@ def test_other_surfaces_stay_right(surface: str) -> None:
     paths = Picture(data, box_filtered(**settings, **PATHS)).run(1024).pixels()
     for method, passes in (("gather", 64), ("guided gather", 64), ("guided paths", 256)):
         found = Picture(data, box_filtered(**settings, **METHODS[method])).run(passes).pixels()
-        print(method, found.mean()/paths.mean(), np.abs(blocks(found, size=8)/ blocks(paths, size=8)-1).max())
+        print(method, found.mean() / paths.mean(), np.abs(blocks(found, size=8) / blocks(paths, size=8) - 1).max())
         assert found.mean() == pytest.approx(paths.mean(), rel=0.01), method
         np.testing.assert_allclose(blocks(found, size=8), blocks(paths, size=8), rtol=0.025, err_msg=method)
 

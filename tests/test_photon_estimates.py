@@ -29,7 +29,11 @@ def furnace(**settings: object) -> Picture:
 def on_the_walls(picture: Picture, count: int = 20000) -> np.ndarray:
     """Return the irradiance that photons bring to points of the furnace's six walls, far from their edges."""
     random = np.random.default_rng(5)
-    points, axis, sign = random.uniform(-0.75, 0.75, (count, 3)), np.arange(count) % 3, np.arange(count) // 3 % 2 * 2 - 1
+    points, axis, sign = (
+        random.uniform(-0.75, 0.75, (count, 3)),
+        np.arange(count) % 3,
+        np.arange(count) // 3 % 2 * 2 - 1,
+    )
     points[np.arange(count), axis] = sign
     normals = np.eye(3)[axis] * -sign[:, None]
     return picture.photon_irradiance(INDIRECT_PHOTONS, points, normals).mean(-1)

@@ -67,11 +67,13 @@ def test_passes_add_up_and_are_there_when_asked_for(corner):
     view_layer.use_pass_emit = True
     ours = view_layer.photon_maps
     ours.use_pass_denoising = ours.use_pass_direct = ours.use_pass_indirect = True
+    ours.use_pass_specular = ours.use_pass_soft_indirect = True
     passes = render(corner)
     assert set(passes) == {
-        *("Combined", "Depth", "Normal", "Position", "Emission", "Direct", "Indirect"),
+        *("Combined", "Depth", "Normal", "Position", "Emission", "Direct", "Indirect", "Specular", "Soft Indirect"),
         *("Denoising Albedo", "Denoising Normal"),
     }
+    np.testing.assert_allclose(passes["Indirect"], passes["Specular"] + passes["Soft Indirect"], rtol=1e-4, atol=1e-6)
     total = passes["Emission"] + passes["Direct"] + passes["Indirect"]
     np.testing.assert_allclose(passes["Combined"][..., :3], total, rtol=1e-4, atol=1e-6)
     assert passes["Direct"].any() and passes["Indirect"].any()

@@ -102,6 +102,33 @@ def test_automatic_leaves_the_choice_to_the_engine(scene, extension):
     assert (by_hand.photon_count, by_hand.radius, by_hand.filter, by_hand.cone_k) == (1000, 0.25, filters.CONE, 2.0)
 
 
+def test_parts_of_the_method_are_chosen_by_hand(scene, extension):
+    """Choices are numbered as in the engine, and reach a render only when Automatic is off."""
+    make, settings, kinds = extension.engine.properties.render_settings, scene.photon_maps, extension.engine.settings
+    enumerations = {"integrator": kinds.Integrator, "estimate": kinds.Estimate, "brdf_direction": kinds.BrdfDirection}
+    for name, members in enumerations.items():
+        items = settings.bl_rna.properties[name].enum_items
+        assert {item.identifier: item.value for item in items} == {member.name: member.value for member in members}
+    chosen = {
+        "estimate": kinds.Estimate.NEAREST,
+        "nearest_count": 37,
+        "brdf_direction": kinds.BrdfDirection.MEAN,
+        "use_final_gather": True,
+        "use_shadow_photons": True,
+        "use_photon_guiding": True,
+    }
+    defaults = {name: getattr(kinds.RenderSettings(), name) for name in chosen}
+    assert {name: getattr(make(scene), name) for name in chosen} == defaults
+    for name, value in chosen.items():
+        setattr(settings, name, value.name if name in enumerations else value)
+    assert {name: getattr(make(scene), name) for name in chosen} == defaults
+    settings.use_auto = False
+    assert {name: getattr(make(scene), name) for name in chosen} == chosen
+    # The method is no part of Automatic.
+    settings.use_auto, settings.integrator = True, "REGULAR_SHADING"
+    assert make(scene).integrator == kinds.Integrator.REGULAR_SHADING
+
+
 def test_threads_and_stop_are_blenders(scene, extension):
     make = extension.engine.properties.render_settings
     scene.render.threads_mode, scene.render.threads = "FIXED", 3
