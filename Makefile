@@ -33,7 +33,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed package test test-native test-python test-campaign lint format bench clean
+.PHONY: help demo beside seed parts package test test-native test-python test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -41,6 +41,7 @@ help:
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
+	@echo 'make parts     what each part of the method costs and gains: [PARTS="--scenes gap --variants \"final gather\""]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
@@ -106,6 +107,11 @@ beside: $(ZIP) .venv/system.stamp
 # The scene, figures and tables of docs/seed.md; the path-traced reference is kept there from run to run.
 seed: build/native/stamp .venv/seed.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.seed.reproduce  # it has threads of its own
+
+# The tables and pictures of docs/method.md; path-traced references are kept there from run to run.
+parts: build/native/stamp .venv/seed.stamp
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.parts_bench $(PARTS)
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.part_pictures
 
 # --- Checks ---
 

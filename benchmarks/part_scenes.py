@@ -180,8 +180,8 @@ SCENES = {
         PartScene("seed", "the course report's scene, matte and open", SEED.data, given=SEED),
         PartScene("caustic", "a glass ball and a brass ring in a box", CAUSTIC.data, given=CAUSTIC),
         PartScene("gap", "a room lit through a narrow gap", gap, None, 1024, True, PHOTONS),
-        PartScene("hall", "fifty lamps over ten columns", hall, None, 1024, False, PHOTONS),
-        PartScene("hall8", "eight lamps over ten columns", lambda: hall((4, 2)), None, 512, False, PHOTONS),
-        PartScene("plastic", "rough diffuse walls, plastic, velvet", plastic, None, 2048, False, PHOTONS),
+        PartScene("hall", "fifty lamps over ten columns", hall, None, 256, False, PHOTONS),
+        PartScene("hall8", "eight lamps over ten columns", lambda: hall((4, 2)), None, 256, False, PHOTONS),
+        PartScene("plastic", "rough diffuse walls, plastic, velvet", plastic, None, 512, False, PHOTONS),
     )
 }
