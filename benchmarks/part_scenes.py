@@ -140,7 +140,7 @@ def hall(lamps: tuple[int, int] = (10, 5)) -> SceneData:
     power = 250.0 / (across * along)
     lights = []
     for i in range(across * along):
-        place = (20 * (i % across + 0.5) / across - 10, 3.9, 10 * (i // across + 0.5) / along - 5)
+        place = (20 * (i % across + 0.5) / across - 10, 3.4, 10 * (i // across + 0.5) / along - 5)
         if i % 2:
             lights.append(rectangle(place, power, 0.4))
         else:

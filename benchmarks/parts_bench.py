@@ -227,9 +227,8 @@ def main() -> int:
         futures = {name: workers.submit(measure, name, names) for name in asked.scenes}
         for name, future in futures.items():
             found.add(future.result())
-            print(f"{name}: measured", flush=True)
-    part_tables.write(OUT, found)
-    print(f"wrote the tables to {OUT}")
+            part_tables.write(OUT, found)
+            print(f"{name}: measured, and the tables in {OUT} brought up to date", flush=True)
     return 0
 
 
