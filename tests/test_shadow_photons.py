@@ -15,6 +15,7 @@ from tests.shapes import IDENTITY, Picture, box_filtered, camera, lamp, quad, sc
 from tests.surfaces import Surface, glass, lambertian, material, mixed, transparent
 
 GREY = diffuse((0.6,) * 3)
+OPAQUE = lambertian((0.5,) * 3)
 LAMP_HEIGHT, BLOCKER_HEIGHT, BLOCKER_HALF, LAMP_HALF = 2.0, 1.0, 0.4, 0.15
 
 
@@ -32,7 +33,7 @@ def share_spared(picture: Picture) -> float:
     return statistics.spared_shadow_rays / (statistics.spared_shadow_rays + statistics.shadow_rays)
 
 
-def blocker_under_lamp(kind: LightType, surface: Surface = lambertian((0.5,) * 3)) -> SceneData:
+def blocker_under_lamp(kind: LightType, surface: Surface = OPAQUE) -> SceneData:
     """A square above a floor below a lamp, seen from beneath the square."""
     meshes = [quad((0, 0, 0), (4, 0, 0), (0, 4, 0)), quad((0, 0, 1), (BLOCKER_HALF, 0, 0), (0, BLOCKER_HALF, 0))]
     size = (2 * LAMP_HALF, 2 * LAMP_HALF) if kind == LightType.RECTANGLE else (0.0, 0.0)
