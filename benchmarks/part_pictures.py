@@ -38,15 +38,15 @@ class Figure:
     variants: tuple[str, ...]
     seconds: float = 0.0  #: of CPU for each
     passes: int = 0  #: for each, where no seconds are given
-    crop: tuple[float, float, float, float] = (0, 0, 1, 1)  #: left, right, bottom, top, shares of the picture
+    crop: tuple[float, float, float, float] = (0, 1, 0, 1)  #: left, right, bottom, top, shares of the picture
     scale: int = 1
     exposure: float = 1.0
 
 
 FIGURES = (
-    Figure("gather", "cornell", RIVALS, seconds=4.0, crop=(0.05, 0.55, 0.0, 0.5), scale=2),
-    Figure("guiding", "gap", GUIDED, seconds=4.0, scale=2),
-    Figure("filters", "caustic", FILTERS, passes=4, crop=(0.1, 0.9, 0.05, 0.4)),
+    Figure("gather", "cornell", RIVALS, seconds=1.5, exposure=2.0, crop=(0.05, 0.55, 0.0, 0.5), scale=2),
+    Figure("guiding", "gap", GUIDED, seconds=2.0, scale=2),
+    Figure("filters", "caustic", FILTERS, passes=1, crop=(0.5, 0.98, 0.05, 0.35), scale=2),
 )
 
 
@@ -55,7 +55,7 @@ def main() -> int:
     OUT.mkdir(parents=True, exist_ok=True)
     for figure in FIGURES:
         draw(OUT / f"method_{figure.name}.png", panels_of(figure), figure)
-    terms = Figure("terms", "caustic", (), passes=64)
+    terms = Figure("terms", "caustic", (), passes=16)
     draw(OUT / "method_terms.png", panels_of_terms(terms), terms)
     return 0
 
