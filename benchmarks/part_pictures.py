@@ -46,7 +46,7 @@ class Figure:
 FIGURES = (
     Figure("gather", "cornell", RIVALS, seconds=1.5, exposure=2.0, crop=(0.05, 0.55, 0.0, 0.5), scale=2),
     Figure("guiding", "gap", GUIDED, seconds=2.0, scale=2),
-    Figure("filters", "caustic", FILTERS, passes=1, crop=(0.5, 0.98, 0.05, 0.35), scale=2),
+    Figure("filters", "caustic", FILTERS, passes=1, exposure=0.15, crop=(0.5, 0.95, 0.05, 0.3), scale=2),
 )
 
 
@@ -71,7 +71,7 @@ def panels_of(figure: Figure) -> list[tuple[str, np.ndarray]]:
         render = Measured(data, fields_of(scene, name, radius))
         while render.passes < figure.passes or render.seconds < figure.seconds:
             render.step()
-        panels.append((f"{name}, {render.passes} passes", render.picture.pixels()))
+        panels.append((f"{name}, {render.passes} pass{'es' if render.passes > 1 else ''}", render.picture.pixels()))
     panels.append(("reference", scene.reference(OUT).radiance))
     return panels
 

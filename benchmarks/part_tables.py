@@ -36,6 +36,7 @@ class GuidingRow:
     """Variance among seeds, relative to the squared reference as relMSE is."""
 
     variant: str
+    photons: int  #: emitted in each pass
     variance: float
     rays: float  #: of all kinds
     seconds: float
@@ -151,6 +152,7 @@ def guiding_table(rows: list[GuidingRow]) -> Table:
             table.append(
                 {
                     "variant": row.variant,
+                    "photons a pass": f"{row.photons:,}",
                     "variance": f"{row.variance:.4f}",
                     "rays": f"{row.rays:,.0f}",
                     "CPU s": f"{row.seconds:.2f}",

@@ -55,7 +55,7 @@ VARIANTS: dict[str, Fields] = {
     "regular shading": {"integrator": Integrator.REGULAR_SHADING},
 }
 
-GUIDING_SCENE, GUIDING_SEEDS, GUIDING_PASSES = "gap", 8, 4
+GUIDING_SCENE, GUIDING_SEEDS, GUIDING_PASSES, GUIDING_PHOTONS = "gap", 6, 2, (1, 16)
 GUIDING_VARIANTS = ("path tracing", "guided paths", "final gather", "guided gather")
 SHADOW_PASSES, SHADOW_PHOTONS = 4, (1, 8)
 GATHER_PASSES = 4
@@ -146,20 +146,19 @@ def measure_variants(scene: PartScene, names: list[str]) -> list[Row]:
     return rows
 
 
-def measure_guiding(scene: PartScene) -> list[GuidingRow]:
+def measure_guiding(scene: PartScene, photons: int) -> list[GuidingRow]:
     """Render a scene with several seeds; the variance of each variant is that among them."""
     data, reference = scene.data(), scene.reference(OUT)
+    seeds = [{"photon_count": photons, "seed": seed} for seed in range(GUIDING_SEEDS)]
+    renders = {name: [Measured(data, fields_of(scene, name, 0) | seed) for seed in seeds] for name in GUIDING_VARIANTS}
+    take_turns([render for group in renders.values() for render in group], GUIDING_PASSES)
     rows = []
-    renders: dict[str, list[Measured]] = {
-        name: [Measured(data, fields_of(scene, name, 0) | {"seed": seed}) for seed in range(GUIDING_SEEDS)]
-        for name in GUIDING_VARIANTS
-    }
-    take_turns([render for seeds in renders.values() for render in seeds], GUIDING_PASSES)
-    for name, seeds in renders.items():
-        pictures = np.stack([render.picture.pixels() for render in seeds])
+    for name, group in renders.items():
+        pictures = np.stack([render.picture.pixels() for render in group])
         variance = (pictures.var(0, ddof=1) / (reference.radiance**2 + 0.01)).mean()
-        rays = np.mean([render.picture.render.statistics().rays for render in seeds])
-        rows.append(GuidingRow(name, float(variance), float(rays), float(np.mean([s.seconds for s in seeds]))))
+        rays = np.mean([render.picture.render.statistics().rays for render in group])
+        seconds = np.mean([render.seconds for render in group])
+        rows.append(GuidingRow(name, photons, float(variance), float(rays), float(seconds)))
     return rows
 
 
@@ -212,7 +211,8 @@ def measure(scene_name: str, names: list[str]) -> part_tables.Measurements:
     if set(names) == set(VARIANTS):
         found.shadows = measure_shadow_photons(scene)
         found.gathers = [measure_gather(scene)]
-        found.guiding = measure_guiding(scene) if scene_name == GUIDING_SCENE else []
+        for more in GUIDING_PHOTONS if scene_name == GUIDING_SCENE else ():
+            found.guiding += measure_guiding(scene, more * scene.photon_count)
     return found
 
 
