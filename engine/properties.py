@@ -3,92 +3,13 @@
 
 from __future__ import annotations
 
-import enum
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
+from .property_items import BRDF_DIRECTIONS, ESTIMATES, FILTERS, INTEGRATORS, PIXEL_FILTERS, STOPS
 from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
 
 _DEFAULTS = RenderSettings()
-
-
-def _items(members: type[enum.IntEnum], texts: dict[enum.IntEnum, tuple[str, str]]) -> list[tuple]:
-    """Return the items of an EnumProperty: identifier, name, description and the number that is saved."""
-    return [(member.name, *texts[member], "NONE", member.value) for member in members]
-
-
-INTEGRATORS = _items(
-    Integrator,
-    {
-        Integrator.PHOTON_MAP: (
-            "Photon Map",
-            "Photons from the lights carry indirect light. Fast and smooth; the blur shrinks with every pass",
-        ),
-        Integrator.PATH_TRACING: (
-            "Path Tracing",
-            "Paths from the camera only, without photons. Slow and noisy, but "
-            "exact on average: the reference to compare with",
-        ),
-        Integrator.REGULAR_SHADING: (
-            "Regular Shading",
-            "The lights alone, at what is seen directly, in mirrors and through glass; no light from surface to "
-            "surface and no caustics. Fastest, and too dark wherever light arrives by way of other surfaces",
-        ),
-    },
-)
-ESTIMATES = _items(
-    Estimate,
-    {
-        Estimate.RADIUS: ("Radius", "Those within a radius: fast, and exact in the end as it shrinks"),
-        Estimate.NEAREST: (
-            "Nearest",
-            "The nearest ones, as many as Nearest Photons says, within the radius at most. Sharper where photons are "
-            "dense and smoother where they are sparse, but slower",
-        ),
-    },
-)
-BRDF_DIRECTIONS = _items(
-    BrdfDirection,
-    {
-        BrdfDirection.PER_PHOTON: ("Each Photon", "Exact for all surfaces; slower on those that are not matte"),
-        BrdfDirection.MEAN: (
-            "Mean Direction",
-            "All photons around a point count as one from their mean direction. Faster on rough diffuse and velvet "
-            "surfaces but darker there, by a tenth and by half when seen from the side; the same on matte ones",
-        ),
-    },
-)
-FILTERS = _items(
-    Filter,
-    {
-        Filter.NONE: ("None", "All photons within the radius count alike. Least noise, most blur"),
-        Filter.CONE: ("Cone", "Near photons count more (Jensen 1996). Sharper edges, more noise; see Cone Constant"),
-        Filter.GAUSSIAN: ("Gaussian", "Near photons count more, along a bell curve. Sharper edges, more noise"),
-        Filter.EPANECHNIKOV: (
-            "Epanechnikov",
-            "Near photons count more, along a parabola. The least error for most pictures, and no slower",
-        ),
-    },
-)
-STOPS = _items(
-    Stop,
-    {
-        Stop.PASSES: ("Passes", "Stop after a number of passes: the same picture for any number of threads"),
-        Stop.TIME: ("Time", "Stop at the end of the first pass after a time: as exact as the time allows"),
-    },
-)
-PIXEL_FILTERS = _items(
-    PixelFilter,
-    {
-        PixelFilter.BOX: ("Box", "A pixel is the mean over its square. Hard edges, independent pixels"),
-        PixelFilter.GAUSSIAN: ("Gaussian", "A bell curve over the width. Soft edges"),
-        PixelFilter.BLACKMAN_HARRIS: (
-            "Blackman-Harris",
-            "A narrow bell curve without a cut, as in Cycles. Smooth edges that stay sharp",
-        ),
-    },
-)
 
 
 class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
@@ -130,7 +51,8 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     )
     brdf_direction: EnumProperty(
         name="Scatter By",
-        description="By which direction a surface scatters the light of photons: exactly, or faster where it is not matte",
+        description="By which direction a surface scatters the light of photons: exactly, or faster and "
+        "darker where it is not matte",
         items=BRDF_DIRECTIONS,
         default=_DEFAULTS.brdf_direction.name,
     )

@@ -50,7 +50,7 @@ BRDF_DIRECTIONS = _items(
         BrdfDirection.MEAN: (
             "Mean Direction",
             "All photons around a point count as one from their mean direction. Faster on rough diffuse and velvet "
-            "surfaces and slightly wrong there; the same on matte ones",
+            "surfaces but darker there, by a tenth and by half when seen from the side; the same on matte ones",
         ),
     },
 )
