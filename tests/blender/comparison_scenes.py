@@ -230,7 +230,7 @@ CASES = [
     Case("glass", closure("BsdfGlass", IOR=1.45, Roughness=0.0), wide_area, perspective),
     Case("rough glass", closure("BsdfGlass", IOR=1.45, Roughness=0.3), both(area, world), perspective),
     Case("principled", principled(), sky, perspective),
-    Case("principled metal", principled(Metallic=1.0, Roughness=0.35), mesh, perspective),
+    Case("principled metal", principled(Metallic=1.0, Roughness=0.35), mesh, perspective, passes=384),
     Case("principled coat", principled(Coat_Weight=1.0, Coat_Roughness=0.1), sun, perspective),
     Case("principled transmission", principled(Transmission_Weight=1.0, Roughness=0.2), wide_area, perspective),
     Case("principled sheen", principled(Sheen_Weight=1.0, Roughness=0.8), area, perspective),
