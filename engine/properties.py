@@ -70,7 +70,7 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     )
     use_photon_guiding: BoolProperty(
         name="Photon Guiding",
-        description="Send the rays of path tracing and final gather to where photons came from. Each ray costs more; "
+        description="Send the rays of path tracing and final gather to where photons came from. Each ray is slower; "
         "pays where light arrives by way of a small part of what a surface sees, such as a gap",
         default=_DEFAULTS.use_photon_guiding,
     )
