@@ -39,7 +39,8 @@ ESTIMATES = _items(
         Estimate.NEAREST: (
             "Nearest",
             "The nearest ones, as many as Nearest Photons says, within the radius at most. Sharper where photons are "
-            "dense and smoother where they are sparse, but slower",
+            "dense and smoother where they are sparse, but two to eight times slower; pays for sharp "
+            "caustics in few passes",
         ),
     },
 )
@@ -50,19 +51,26 @@ BRDF_DIRECTIONS = _items(
         BrdfDirection.MEAN: (
             "Mean Direction",
             "All photons around a point count as one from their mean direction. Faster on rough diffuse and velvet "
-            "surfaces but darker there, by a tenth and by half when seen from the side; the same on matte ones",
+            "surfaces, but about 1 % too dark there however many passes; the same on matte ones",
         ),
     },
 )
 FILTERS = _items(
     Filter,
     {
-        Filter.NONE: ("None", "All photons within the radius count alike. Least noise, most blur"),
-        Filter.CONE: ("Cone", "Near photons count more (Jensen 1996). Sharper edges, more noise; see Cone Constant"),
+        Filter.NONE: (
+            "None",
+            "All photons within the radius count alike. Least noise, most blur: for large matte surfaces",
+        ),
+        Filter.CONE: (
+            "Cone",
+            "Near photons count more (Jensen 1996). Sharper edges and caustics, more noise; see Cone Constant",
+        ),
         Filter.GAUSSIAN: ("Gaussian", "Near photons count more, along a bell curve. Sharper edges, more noise"),
         Filter.EPANECHNIKOV: (
             "Epanechnikov",
-            "Near photons count more, along a parabola. The least error for most pictures, and no slower",
+            "Near photons count more, along a parabola. At most about a tenth from the least error in "
+            "the scenes measured, and no slower",
         ),
     },
 )
