@@ -13,7 +13,6 @@ using namespace photon_maps;
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int rounds = 5;
 constexpr size_t leaf_size = 16;  // of nanoflann: the fastest here of 8, 16 and 32
 

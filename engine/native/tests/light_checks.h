@@ -18,7 +18,6 @@
 namespace photon_maps::test {
 
 constexpr double pi_double = std::numbers::pi;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr Vec3 up{0, 0, 1};
 constexpr uint64_t sample_count = 1 << 18;
 
