@@ -161,7 +161,8 @@ std::vector<FeatureEdge> find_feature_edges(std::span<const Vec3> vertices,
                 const Double3 &n = normals[h.triangle];
                 features.push_back({vertices[triangle[h.corner]],
                                     vertices[triangle[(h.corner + 1) % 3]],
-                                    {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}});
+                                    {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])},
+                                    around.size() == 1});
             }
         }
     }
@@ -171,7 +172,8 @@ std::vector<FeatureEdge> find_feature_edges(std::span<const Vec3> vertices,
 FeatureEdge transformed(const FeatureEdge &edge, const Transform &transform) {
     const Vec3 a = transform.point(edge.a), b = transform.point(edge.b);
     const Vec3 normal = normalize(transform.normal(edge.normal));
-    return transform.determinant() < 0 ? FeatureEdge{b, a, normal} : FeatureEdge{a, b, normal};
+    return transform.determinant() < 0 ? FeatureEdge{b, a, normal, edge.is_open}
+                                       : FeatureEdge{a, b, normal, edge.is_open};
 }
 
 }  // namespace photon_maps

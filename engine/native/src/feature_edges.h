@@ -18,7 +18,8 @@ constexpr float smooth_edge_cosine = -0.7f;
 /// A half-edge of a face. Looking against `normal`, the face lies on the left of the way from a to b.
 struct FeatureEdge {
     Vec3 a, b;
-    Vec3 normal;  ///< unit normal of the face, by its winding
+    Vec3 normal;           ///< unit normal of the face, by its winding
+    bool is_open = false;  ///< no other face shares it: a sheet ends here
 
     /// Returns the vector in the face's plane that leads from the edge into the face; not normalised.
     Vec3 inward() const { return cross(normal, b - a); }

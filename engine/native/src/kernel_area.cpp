@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kernel_area.h"
 
+#include <array>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -49,15 +50,35 @@ double dot(Precise3 a, Precise3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 double dot(Precise3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Returns whether an edge from a to b, relative to the kernel's centre, comes near it in its plane.
-bool bounds_surface(Precise3 a, Precise3 b, Vec3 normal, double radius) {
+/// @param highest distance from the plane
+bool bounds_surface(Precise3 a, Precise3 b, Vec3 normal, double radius, double highest) {
     // Most edges lie wholly above or below what counts.
-    const double height_a = dot(a, normal), height_b = dot(b, normal), highest = plane_tolerance * radius;
+    const double height_a = dot(a, normal), height_b = dot(b, normal);
     if (std::min(height_a, height_b) >= highest || std::max(height_a, height_b) <= -highest) return false;
     const Precise3 ab{b.x - a.x, b.y - a.y, b.z - a.z};
     const double squared = dot(ab, ab);
     const double s = squared > 0 ? std::clamp(-dot(a, ab) / squared, 0.0, 1.0) : 0.0;
     const Precise3 closest{a.x + s * ab.x, a.y + s * ab.y, a.z + s * ab.z};
     return dot(closest, closest) < radius * radius && std::abs(height_a + s * (height_b - height_a)) < highest;
+}
+
+/// Returns whether an edge is the foot of a sheet that stands on a plane, on the side of its normal. What is no sheet
+/// has a face that lies there, whose edge it is.
+bool is_foot(const FeatureEdge &edge, Vec3 normal) {
+    return edge.is_open && dot(normalize(edge.inward()), normal) > normal_tolerance;
+}
+
+/// Returns whether a barrier lies along another one from end to end: surfaces that meet each have an edge there.
+bool is_along(const Barrier &barrier, const Barrier &other) {
+    constexpr float near = 1e-4f;
+    const Point2<float> a{other.ax, other.ay}, b{other.bx, other.by};
+    const float length = std::sqrt(dot(b - a, b - a));
+    const Point2<float> along = (b - a) * (1 / length);
+    const auto is_on = [&](Point2<float> p) {
+        const float way = dot(p - a, along);
+        return std::abs(cross(along, p - a)) < near && way > -near && way < length + near;
+    };
+    return is_on({barrier.ax, barrier.ay}) && is_on({barrier.bx, barrier.by});
 }
 
 /// Clips the line from a to b to the unit disc and adds what is left as a barrier.
@@ -228,19 +249,41 @@ KernelRegion::KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Ke
     const double tolerance = std::min(1e-6 + 4e-7 * max_component(abs(p)) / radius, 0.01);
     const Frame frame(normal);
     const auto project = [&](Precise3 q) { return Point2<double>{dot(q, frame.x) / radius, dot(q, frame.y) / radius}; };
+    const auto reaches = [&](const FeatureEdge &edge, double highest) {
+        return bounds_surface(exact_difference(edge.a, p), exact_difference(edge.b, p), normal, radius, highest);
+    };
+    const auto add = [&](const FeatureEdge &edge) {
+        add_barrier(project(exact_difference(edge.a, p)), project(exact_difference(edge.b, p)), tolerance, barriers_);
+    };
+
+    // Edges of what lies in the plane.
+    std::array<uint32_t, max_barriers> feet;
+    size_t foot_count = 0;
     for (const uint32_t candidate : candidates) {
         const FeatureEdge &edge = edges.edge(candidate);
-        if (!(std::abs(dot(edge.normal, normal)) > normal_tolerance)) continue;
-        const Precise3 a = exact_difference(edge.a, p), b = exact_difference(edge.b, p);
-        if (!bounds_surface(a, b, normal, radius)) continue;
-        add_barrier(project(a), project(b), tolerance, barriers_);
-        if (barriers_.size() > max_barriers) {
-            barriers_.clear();
-            is_crowded_ = true;
-            return;
+        constexpr double standing_tolerance = 0.01;
+        if (std::abs(dot(edge.normal, normal)) > normal_tolerance) {
+            if (reaches(edge, plane_tolerance * radius)) add(edge);
+        } else if (edge.is_open && reaches(edge, standing_tolerance * radius) && is_foot(edge, normal)) {
+            if (foot_count < feet.size()) feet[foot_count++] = candidate;
         }
+        if (barriers_.size() > max_barriers) break;
     }
-    measure(kernel);
+
+    // Feet of sheets that stand on it: light does not pass beneath.
+    for (size_t f = 0; f < foot_count && barriers_.size() <= max_barriers; ++f) {
+        const size_t before = barriers_.size();
+        add(edges.edge(feet[f]));
+        if (barriers_.size() == before) continue;
+        const std::span others(barriers_.begin(), before);
+        if (std::ranges::any_of(others, [&](const Barrier &other) { return is_along(barriers_.back(), other); }))
+            barriers_.pop_back();
+    }
+    is_crowded_ = barriers_.size() > max_barriers;
+    if (is_crowded_)
+        barriers_.clear();
+    else
+        measure(kernel);
 }
 
 KernelRegion::KernelRegion(std::span<const Barrier> barriers, const Kernel &kernel) {

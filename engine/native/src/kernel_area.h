@@ -38,7 +38,7 @@ class KernelRegion {
 
     /// Cuts the disc of radius kernel.radius around p by the edges that bound p's surface: those whose closest
     /// point lies within the radius of p and near p's tangent plane and whose face is parallel to it, on either
-    /// side, so that what stands on the surface counts too.
+    /// side, so that what stands on the surface counts too; and by the feet of sheets that stand on it.
     /// @param normal unit geometric normal on the side that is seen
     /// @throws std::invalid_argument if the kernel is larger than `edges` was built for
     KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Kernel &kernel);

@@ -208,6 +208,33 @@ void check_index(test::Checks &checks) {
     checks.that(EdgeIndex(vast, 1e-3f).memory_bytes() < 512u << 20, "memory is bounded");
 }
 
+/// A sheet across a floor: it cuts the disc in half for who stands at its foot, whichever side; not what ends above the
+/// floor, nor the sheet's own other edges.
+void check_sheets(test::Checks &checks) {
+    const std::vector<Vec3> vertices = {{-9, 0, 0}, {9, 0, 0}, {9, 0, 4}, {-9, 0, 4}};
+    const std::vector<std::array<uint32_t, 3>> triangles = {{0, 1, 2}, {0, 2, 3}};
+    const EdgeIndex edges(find_feature_edges(vertices, triangles), 1.0f);
+    for (const pm_filter filter : filters) {
+        const Kernel kernel{filter, 1, 1.25f};
+        for (const float side : {-1.0f, 1.0f}) {
+            const KernelRegion at_foot(edges, {0, 1e-3f * side, 0}, {0, 0, 1}, kernel);
+            checks.near(double{at_foot.share()}, 0.5, 2e-3, "half a disc at the foot of a sheet");
+            const KernelRegion beyond(edges, {0, 1.5f * side, 0}, {0, 0, 1}, kernel);
+            checks.near(double{beyond.share()}, 1, 0, "the whole disc away from it");
+        }
+        const KernelRegion below(edges, {0, 0.1f, -0.1f}, {0, 0, 1}, kernel);
+        checks.near(double{below.share()}, 1, 0, "the sheet ends above the floor");
+        const KernelRegion ceiling(edges, {0, 0.1f, 0}, {0, 0, -1}, kernel);
+        checks.near(double{ceiling.share()}, 1, 0, "the sheet stands on the other side");
+    }
+    const std::vector<Vec3> solid = {{-9, 0, 0}, {9, 0, 0}, {9, 0, 4}, {-9, 0, 4}, {9, 1, 0}, {-9, 1, 0}};
+    const std::vector<std::array<uint32_t, 3>> folded = {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {0, 5, 4}};
+    for (const FeatureEdge &edge : find_feature_edges(solid, folded)) {
+        const bool is_fold = edge.a.y == 0 && edge.b.y == 0 && edge.a.z == 0 && edge.b.z == 0;
+        checks.that(edge.is_open == !is_fold, "an edge that two faces share is not open");
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -215,5 +242,6 @@ int main() {
     check_random_shares(checks);
     check_on_edges(checks);
     check_index(checks);
+    check_sheets(checks);
     return checks.report();
 }
