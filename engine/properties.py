@@ -59,7 +59,7 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     use_final_gather: BoolProperty(
         name="Final Gather",
         description="Look for indirect light by rays from what is seen, and ask the photons where those end: grain "
-        "in place of blotches. Slower to the same error; pays where blotches disturb or light leaks beneath walls",
+        "in place of blotches. Slower to the same error; pays where blotches disturb",
         default=_DEFAULTS.use_final_gather,
     )
     use_shadow_photons: BoolProperty(

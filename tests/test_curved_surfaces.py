@@ -45,7 +45,7 @@ SHAPES = {"smooth": sphere(0.2, 64), "facets": flat(sphere(0.2, 12)), "bumpy": b
 BOUNDS = {"smooth": (0.015, 0.04), "facets": (0.015, 0.04), "bumpy": (0.025, 0.06)}
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", ["smooth", pytest.param("facets", marks=pytest.mark.campaign), "bumpy"])
 def test_indirect_light_on_a_small_thing_is_that_of_path_tracing(name: str) -> None:
     """As a whole and by quarters; divided by whole discs it would be 2, 7 and 49 % too dark."""
     data = room_with(SHAPES[name], (0, 0.1, 0.25), 0.17)

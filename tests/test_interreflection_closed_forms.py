@@ -15,6 +15,8 @@ INDIRECT_PHOTONS = 1
 PARTS = (Pass.EMISSION, Pass.BACKGROUND, Pass.DIRECT, Pass.INDIRECT, Pass.CAUSTIC)  #: whose sum is the picture
 ROOM = 2.0
 
+LONG = pytest.mark.campaign
+
 
 def room(albedo: float, emission: float, resolution: tuple[int, int] = (64, 64), **settings: object) -> Picture:
     """A closed cube whose walls shine, seen from inside towards a corner; about two thirds of the frame is near it."""
@@ -34,7 +36,9 @@ def test_furnace_radiance_is_emission_over_absorption(integrator: Integrator, al
     assert picture.pixels().mean() == pytest.approx(1 / (1 - albedo), rel=0.005)
 
 
-@pytest.mark.parametrize("kernel", list(Filter))
+@pytest.mark.parametrize(
+    "kernel", [Filter.CONE, Filter.EPANECHNIKOV, *(pytest.param(f, marks=LONG) for f in (Filter.NONE, Filter.GAUSSIAN))]
+)
 def test_furnace_is_flat_into_its_corners(kernel: Filter) -> None:
     """With the radius at 5 % of the room, blocks of pixels on the corner and its edges are as bright as any."""
     settings = {"filter": kernel, "radius": 0.05 * ROOM, "use_progressive": False, "photon_count": 1 << 18}
@@ -57,7 +61,7 @@ def corner_lines(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.stack(points), np.stack(normals)
 
 
-@pytest.mark.campaign
+@LONG
 def test_photons_alone_are_flat_into_the_corners() -> None:
     """The photons' irradiance is the same on all of the lines that run into the corners of the room."""
     settings = {"radius": 0.05 * ROOM, "use_progressive": False, "photon_count": 1 << 18}
@@ -87,7 +91,7 @@ def test_white_sky_makes_a_white_object_vanish(integrator: Integrator) -> None:
     assert pixels.mean() == pytest.approx(1, rel=0.005)
 
 
-@pytest.mark.parametrize("is_smooth", [False, True])
+@pytest.mark.parametrize("is_smooth", [pytest.param(False, marks=LONG), True])
 def test_many_bounces_in_a_sphere_keep_their_energy(is_smooth: bool) -> None:
     """Nine tenths of the light is indirect; smooth shading normals must not cost any of it, bounce by bounce."""
     albedo, power, radius = 0.9, 50.0, 1.5
