@@ -41,7 +41,8 @@ def check_against_reference(name: str, method: str, passes: int, size: int) -> N
     picture = Picture(DIFFUSE_SCENES[name].data(), box_filtered(max_bounces=64, **METHODS[method])).run(passes)
     kept = without_lamp(reference)
     found, expected = (blocks(p, kept, size).mean(-1) for p in (picture.pixels(), reference))
-    np.testing.assert_allclose(found, expected, rtol=0.01)
+    sliver = 1e-3 * expected.mean()  # blocks that show next to nothing are judged by the picture
+    np.testing.assert_allclose(found, expected, rtol=0.01, atol=sliver)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -54,7 +55,7 @@ def test_quarters_of_the_picture_agree_with_the_reference(name: str, method: str
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", DIFFUSE_SCENES)
 def test_blocks_of_the_picture_agree_with_the_reference(name: str, method: str) -> None:
-    check_against_reference(name, method, 24, 64)
+    check_against_reference(name, method, 64, 64)
 
 
 def furnace(albedo: float, resolution: tuple[int, int] = (32, 32), **settings: object) -> Picture:

@@ -54,6 +54,7 @@ def main() -> int:
     OUT.mkdir(parents=True, exist_ok=True)
     data, settings = blender_data()
     reference = path_traced(data, settings)
+    settings = replace(settings, keep_photons=True)  # for the figures, and so that direct ones are counted
     recipe = recipe_scene()
     maps, seconds = {}, {}
     for emitted in EMITTED:
