@@ -84,3 +84,20 @@ def corner(scene):
     lamp(scene, "AREA", Matrix.Translation((0.5, 0.0, 2.0)), energy=50.0, size=0.5)
     camera_above(scene, scale=3.0)
     return scene
+
+
+@pytest.fixture
+def exported(scene, extension):
+    """Export the scene: SceneData and the messages as lines."""
+    from bl_ext.user_default.photon_maps.engine.export.scene import read_scene
+    from bl_ext.user_default.photon_maps.engine.messages import Messages
+
+    camera_above(scene)
+
+    def export():
+        messages = Messages()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        data = read_scene(depsgraph, scene.camera.evaluated_get(depsgraph), messages)
+        return data, [str(message) for message in messages]
+
+    return export

@@ -7,24 +7,13 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.blender.scenes import camera_above, link, material, quad
+from tests.blender.scenes import lamp, link, material, quad
 
 
-@pytest.fixture
-def exported(scene, extension):
-    """Export the scene: SceneData and the messages as lines."""
-    from bl_ext.user_default.photon_maps.engine.export.scene import read_scene
-    from bl_ext.user_default.photon_maps.engine.messages import Messages
-
-    camera_above(scene)
-
-    def export():
-        messages = Messages()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        data = read_scene(depsgraph, scene.camera.evaluated_get(depsgraph), messages)
-        return data, [str(message) for message in messages if message.object != scene.name]
-
-    return export
+@pytest.fixture(autouse=True)
+def lit(scene):
+    """Nobody asks for the message that there is no light."""
+    lamp(scene)
 
 
 def asking(thing, kind, output, **settings):

@@ -15,23 +15,6 @@ from photon_maps_native.shader import Op
 from tests.blender.scenes import camera_above, lamp, link, material, quad, render, sun_radiance
 
 
-@pytest.fixture
-def exported(scene, extension):
-    """Export the scene: SceneData and the messages as lines."""
-    from bl_ext.user_default.photon_maps.engine.export.scene import read_scene
-    from bl_ext.user_default.photon_maps.engine.messages import Messages
-
-    camera_above(scene)
-
-    def export():
-        messages = Messages()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        data = read_scene(depsgraph, scene.camera.evaluated_get(depsgraph), messages)
-        return data, [str(message) for message in messages]
-
-    return export
-
-
 def albedo(material):
     """Return the weight of a material's diffuse closure, which is a constant."""
     (first,) = [row[4] for row in material.instructions.tolist() if row[0] == Op.DIFFUSE]
