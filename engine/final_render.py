@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor, TimeoutError
@@ -150,9 +151,14 @@ def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[bool]) 
 def _tell(engine: bpy.types.RenderEngine, session: Session) -> None:
     settings, statistics = session.settings, session.statistics()
     megabytes = statistics.memory_bytes / 2**20
-    limit = f", {settings.time_limit:g} s in all" if settings.stop == Stop.TIME else f" of {settings.passes}"
+    limit = {
+        Stop.PASSES: f" of {settings.passes}",
+        Stop.TIME: f", {settings.time_limit:g} s in all",
+        Stop.ERROR: f", until the error is {settings.error_target:.1%}",
+    }[settings.stop]
+    error = "" if math.isinf(statistics.error) else f" | error about {statistics.error:.1%}"
     engine.update_progress(session.progress)
     engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
     engine.update_stats(
-        "", f"Pass {statistics.passes}{limit} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
+        "", f"Pass {statistics.passes}{limit}{error} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
     )

@@ -23,6 +23,7 @@ class Pass(enum.IntEnum):
     PHOTON_DENSITY = 10
     SPECULAR = 11
     SOFT_INDIRECT = 12
+    ERROR = 13
 
 
 @dataclass(frozen=True)
@@ -51,4 +52,5 @@ PASSES = (
     PassInfo(Pass.CAUSTIC, "Caustic", "RGB", "COLOR", "photon_maps.use_pass_caustic"),
     PassInfo(Pass.BACKGROUND, "Environment", "RGB", "COLOR", "use_pass_environment"),
     PassInfo(Pass.PHOTON_DENSITY, "Photon Density", "X", "VALUE", "photon_maps.use_pass_photon_density"),
+    PassInfo(Pass.ERROR, "Error", "X", "VALUE", "photon_maps.use_pass_error"),
 )

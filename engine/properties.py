@@ -3,13 +3,36 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-from .property_items import BRDF_DIRECTIONS, ESTIMATES, FILTERS, INTEGRATORS, PIXEL_FILTERS, STOPS
-from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
+from .property_items import BRDF_DIRECTIONS, ESTIMATES, FILTERS, INTEGRATORS, PIXEL_FILTERS, QUALITIES, STOPS
+from .settings import (
+    QUALITY_ERRORS,
+    BrdfDirection,
+    Estimate,
+    Filter,
+    Integrator,
+    PixelFilter,
+    Quality,
+    RenderSettings,
+    Stop,
+)
 
 _DEFAULTS = RenderSettings()
+
+
+def quality(settings: PhotonMapsSceneSettings) -> int:
+    """Return the number of what the error target is called."""
+    error = settings.error_target
+    return next((q for q, named in QUALITY_ERRORS.items() if math.isclose(named, error, rel_tol=1e-3)), Quality.CUSTOM)
+
+
+def set_quality(settings: PhotonMapsSceneSettings, number: int) -> None:
+    """Set the error target that a quality stands for; Custom leaves it as it is."""
+    settings.error_target = QUALITY_ERRORS.get(Quality(number), settings.error_target)
 
 
 class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
@@ -137,7 +160,26 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
         name="Stop",
         description="When the picture is done",
         items=STOPS,
-        default=_DEFAULTS.stop.name,
+        default=Stop.ERROR.name,
+    )
+    quality: EnumProperty(
+        name="Quality",
+        description="How small the error of the picture is to be; half the error takes about four times as long",
+        items=QUALITIES,
+        get=quality,
+        set=set_quality,
+    )
+    error_target: FloatProperty(
+        name="Error",
+        description="Relative error at which the picture is done, 0.02 for 2 %: the root mean square over its pixels, "
+        "as estimated from its passes. Half of it takes about four times as long",
+        default=_DEFAULTS.error_target,
+        min=0.0001,
+        soft_min=0.005,
+        soft_max=0.1,
+        max=1.0,
+        precision=4,
+        step=0.1,
     )
     passes: IntProperty(
         name="Passes",
@@ -210,6 +252,10 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
         name="Caustic",
         description="Light that glass and metal throw onto rough surfaces. Costs memory, hardly any time",
     )
+    use_pass_error: BoolProperty(
+        name="Error",
+        description="Estimated relative error of each pixel by its noise: 0.02 is 2 %. Costs memory, hardly any time",
+    )
     use_pass_photon_density: BoolProperty(
         name="Photon Density",
         description="Photons for each square metre around what a pixel shows: where estimates are good, and where "
@@ -247,6 +293,7 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
         passes=user.passes,
         pass_offset=user.pass_offset,
         time_limit=user.time_limit,
+        error_target=user.error_target,
         pixel_filter=PixelFilter[user.pixel_filter],
         pixel_filter_width=user.pixel_filter_width,
         film_transparent=scene.render.film_transparent,

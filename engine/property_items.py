@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import enum
 
-from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, Stop
+from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, Quality, Stop
 
 
 def _items(members: type[enum.IntEnum], texts: dict[enum.IntEnum, tuple[str, str]]) -> list[tuple]:
@@ -79,6 +79,20 @@ STOPS = _items(
     {
         Stop.PASSES: ("Passes", "Stop after a number of passes: the same picture for any number of threads"),
         Stop.TIME: ("Time", "Stop at the end of the first pass after a time: as exact as the time allows"),
+        Stop.ERROR: (
+            "Quality",
+            "Stop when the error of the picture, estimated from how its passes differ, is small enough. Parts that are "
+            "done before the rest get no more samples",
+        ),
+    },
+)
+QUALITIES = _items(
+    Quality,
+    {
+        Quality.DRAFT: ("Draft", "An error of 5 %: composition and light can be judged. Fastest"),
+        Quality.NORMAL: ("Normal", "An error of 2 %: noise is seen only where one looks for it"),
+        Quality.FINAL: ("Final", "An error of 1 %: about four times as long as Normal"),
+        Quality.CUSTOM: ("Custom", "The error set below"),
     },
 )
 PIXEL_FILTERS = _items(

@@ -11,6 +11,11 @@ from photon_maps_native import Device, NativeRender, NativeScene, SceneData, Sta
 from .passes import PASSES, Pass
 from .settings import RenderSettings, Stop
 
+#: Before the fourth pass the passes tell too little of each other.
+LEAST_PASSES_FOR_ERROR = 4
+#: What an error target that cannot be reached ends after.
+MOST_PASSES_FOR_ERROR = 1 << 16
+
 
 class Session:
     """A scene in the helper, and the picture that grows there pass by pass.
@@ -28,7 +33,7 @@ class Session:
         self.settings = settings
         self._device = Device()
         self._scene = NativeScene(self._device, scene)
-        self._render = NativeRender(self._scene, scene.camera, settings, buffers)
+        self._render = NativeRender(self._scene, scene.camera, settings, buffers | {Pass.ERROR})
         self._next_pass = settings.pass_offset
         self._started = time.monotonic()
 
@@ -52,7 +57,17 @@ class Session:
         if self.settings.stop == Stop.TIME:
             started = self._next_pass > self.settings.pass_offset
             return min(1.0, (time.monotonic() - self._started) / self.settings.time_limit) if started else 0.0
-        return (self._next_pass - self.settings.pass_offset) / self.settings.passes
+        passes = self._next_pass - self.settings.pass_offset
+        if self.settings.stop == Stop.ERROR:
+            return self._progress_to_error(passes)
+        return passes / self.settings.passes
+
+    def _progress_to_error(self, passes: int) -> float:
+        error, target = self.statistics().error, self.settings.error_target
+        if passes >= MOST_PASSES_FOR_ERROR or (passes >= LEAST_PASSES_FOR_ERROR and error <= target):
+            return 1.0
+        # Errors fall with the square root of the time.
+        return min(0.99, (target / error) ** 2) if error > target else min(0.99, passes / LEAST_PASSES_FOR_ERROR)
 
     def read(self, buffer: Pass) -> np.ndarray:
         """Return a buffer as (height, width, channels) float32, rows from the bottom: the mean of the passes."""

@@ -54,6 +54,20 @@ class Stop(enum.IntEnum):
 
     PASSES = 0
     TIME = 1
+    ERROR = 2
+
+
+class Quality(enum.IntEnum):
+    """Errors at which a render may stop, numbered as in saved files."""
+
+    DRAFT = 0
+    NORMAL = 1
+    FINAL = 2
+    CUSTOM = 3
+
+
+#: Relative errors of the qualities that have one of their own.
+QUALITY_ERRORS = {Quality.DRAFT: 0.05, Quality.NORMAL: 0.02, Quality.FINAL: 0.01}
 
 
 @dataclass(frozen=True)
@@ -80,8 +94,14 @@ class RenderSettings:
     passes: int = 64
     pass_offset: int = 0
     time_limit: float = 60.0  #: seconds
+    error_target: float = 0.02  #: relative
     pixel_filter: PixelFilter = PixelFilter.BLACKMAN_HARRIS
     pixel_filter_width: float = 1.5
     film_transparent: bool = False
     threads: int = 0  #: 0: one for every core
     keep_photons: bool = False  #: so that they can be read after a pass; costs memory
+
+    @property
+    def stop_error(self) -> float:
+        """The error at which parts of the picture get no further samples; 0 where another rule stops the render."""
+        return self.error_target if self.stop == Stop.ERROR else 0.0

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,7 @@ class Summary:
     radius_first: float
     radius_last: float
     peak_memory_bytes: int
-    error_estimate: float | None
+    error_estimate: float | None  #: relative; None before the second pass
     maps: list[str]
     messages: list[str]
 
@@ -62,7 +63,7 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         radius_first=statistics.radius_first,
         radius_last=statistics.radius_last,
         peak_memory_bytes=statistics.memory_bytes,
-        error_estimate=None,
+        error_estimate=None if math.isinf(statistics.error) else round(statistics.error, 6),
         maps=maps_built(statistics),
         messages=[str(message) for message in messages],
     )

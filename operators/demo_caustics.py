@@ -30,7 +30,7 @@ def caustics() -> bpy.types.Scene:
     camera(scene, (0.05, -0.52, 0.37), (0.002, -0.012, 0.026), 57.0)
     scene.render.engine = "PHOTON_MAPS"
     scene.render.resolution_x, scene.render.resolution_y = 800, 600
-    scene.photon_maps.passes = 20
+    scene.photon_maps.stop, scene.photon_maps.passes = "PASSES", 20
     return scene
 
 

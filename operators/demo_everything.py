@@ -36,7 +36,7 @@ def everything() -> bpy.types.Scene:
     view.dof.use_dof, view.dof.focus_distance, view.dof.aperture_fstop = True, 2.5, 1.2
     scene.render.engine = "PHOTON_MAPS"
     scene.render.resolution_x, scene.render.resolution_y = 640, 400
-    scene.photon_maps.passes = 48
+    scene.photon_maps.stop, scene.photon_maps.passes = "PASSES", 48
     return scene
 
 

@@ -162,4 +162,4 @@ def _camera(scene: bpy.types.Scene) -> None:
 def _settings(scene: bpy.types.Scene) -> None:
     scene.render.engine = "PHOTON_MAPS"
     scene.render.resolution_x, scene.render.resolution_y = 640, 480
-    scene.photon_maps.passes = 32
+    scene.photon_maps.stop, scene.photon_maps.passes = "PASSES", 32

@@ -25,6 +25,7 @@ from photon_maps_native import (
 )
 
 from engine.passes import Pass
+from engine.session import channel_count
 from engine.settings import Integrator, PixelFilter, RenderSettings
 
 IDENTITY = np.eye(3, 4, dtype=np.float32)
@@ -148,7 +149,7 @@ class Picture:
 
     def pixels(self, buffer: Pass = Pass.COMBINED) -> np.ndarray:
         """Return a buffer (height, width, channels) in double precision; Combined without its alpha."""
-        channels = {Pass.COMBINED: 4, Pass.DEPTH: 1, Pass.PHOTON_DENSITY: 1}.get(buffer, 3)
+        channels = channel_count(buffer)
         return self.render.read(buffer, channels)[..., :3].astype(float)
 
     def photon_irradiance(self, kind: int, points: np.ndarray, normals: np.ndarray) -> np.ndarray:

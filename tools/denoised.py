@@ -43,7 +43,7 @@ def render_both(extension: Path, out: Path, passes: int, profile: str) -> None:
     try:
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         scene = importlib.import_module(f"{EXTENSION}.operators.demo_everything").everything()
-        scene.photon_maps.passes = passes
+        scene.photon_maps.stop, scene.photon_maps.passes = "PASSES", passes
         scene.view_layers[0].photon_maps.use_pass_denoising = True
         before, after = Path(profile) / "before.png", Path(profile) / "after.png"
         press_f12(scene, before)

@@ -116,7 +116,8 @@ class PHOTON_MAPS_PT_stop(_Panel, bpy.types.Panel):
         settings = context.scene.photon_maps
         column = self.column()
         column.prop(settings, "stop", expand=True)
-        column.prop(settings, "passes" if settings.stop == "PASSES" else "time_limit")
+        for name in {"PASSES": ["passes"], "TIME": ["time_limit"], "ERROR": ["quality", "error_target"]}[settings.stop]:
+            column.prop(settings, name)
         column.prop(settings, "pass_offset")
 
 

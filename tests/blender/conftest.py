@@ -66,7 +66,7 @@ def scene(extension, tmp_path):
         image.media_type = "MULTI_LAYER_IMAGE"
     image.file_format = "OPEN_EXR_MULTILAYER"
     image.color_depth, image.exr_codec = "32", "NONE"
-    scene.photon_maps.passes = 1
+    scene.photon_maps.stop, scene.photon_maps.passes = "PASSES", 1
     scene.photon_maps.pixel_filter, scene.photon_maps.pixel_filter_width = "BOX", 1.0
     return scene
 

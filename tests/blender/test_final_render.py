@@ -37,11 +37,21 @@ def test_the_summary_has_every_field(corner):
     assert summary["passes"] == 3 and summary["photons_stored"] > 0 and summary["maps"] == ["global"]
     assert summary["photons_emitted"] > summary["caustic_photons"] == 0
     assert summary["radius_first"] > summary["radius_last"] > 0.0
-    assert summary["rays"] > 3 * 32 * 32 and summary["peak_memory_bytes"] > 0 and summary["error_estimate"] is None
+    assert summary["rays"] > 3 * 32 * 32 and summary["peak_memory_bytes"] > 0
+    assert 0 < summary["error_estimate"] < 0.2
     assert summary["messages"] == [] and summary["seconds"] > 0.0 and summary["cpu_seconds"] > 0.0
     assert np.isfinite(passes["ViewLayer.Combined"]).all()
     for field in FIELDS:
         assert json.loads(attributes[f"photon_maps.{field}"]) == summary[field], field
+
+
+def test_a_render_stops_at_its_error_target(corner):
+    corner.photon_maps.stop, corner.photon_maps.error_target = "ERROR", 0.03
+    bpy.context.view_layer.photon_maps.use_pass_error = True
+    passes, summary = render_with_summary(corner)
+    assert summary["passes"] >= 4 and 0.0 < summary["error_estimate"] <= 0.03
+    error = passes["Error"]
+    assert error.shape == (32, 32, 1) and np.isfinite(error).all() and 0.001 < error.mean() < 0.1
 
 
 def test_path_tracing_is_the_same_picture_without_photons(corner):

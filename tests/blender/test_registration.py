@@ -66,7 +66,8 @@ def test_names_that_do_not_change(scene, extension):
         "estimate": ["RADIUS", "NEAREST"],
         "brdf_direction": ["PER_PHOTON", "MEAN"],
         "filter": ["NONE", "CONE", "GAUSSIAN", "EPANECHNIKOV"],
-        "stop": ["PASSES", "TIME"],
+        "stop": ["PASSES", "TIME", "ERROR"],
+        "quality": ["DRAFT", "NORMAL", "FINAL", "CUSTOM"],
         "pixel_filter": ["BOX", "GAUSSIAN", "BLACKMAN_HARRIS"],
     }
     for name, identifiers in numbered.items():
@@ -74,8 +75,8 @@ def test_names_that_do_not_change(scene, extension):
         assert [(item.identifier, item.value) for item in items] == [
             (one, number) for number, one in enumerate(identifiers)
         ]
-    others = "use_auto photon_count nearest_count radius cone_k max_bounces seed passes time_limit use_progressive "
-    parts = "use_caustics use_indirect use_final_gather use_shadow_photons use_photon_guiding "
+    others = "use_auto photon_count nearest_count radius cone_k max_bounces seed passes time_limit error_target "
+    parts = "use_progressive use_caustics use_indirect use_final_gather use_shadow_photons use_photon_guiding "
     for name in (others + parts + "pixel_filter_width pass_offset").split():
         assert hasattr(settings, name)
     assert MANIFEST["version"] == extension.engine.summary.VERSION
@@ -129,6 +130,17 @@ def test_parts_of_the_method_are_chosen_by_hand(scene, extension):
     assert make(scene).integrator == kinds.Integrator.REGULAR_SHADING
 
 
+def test_qualities_are_error_targets(scene, extension):
+    make, settings = extension.engine.properties.render_settings, scene.photon_maps
+    settings.property_unset("stop")
+    assert (make(scene).stop.name, settings.quality) == ("ERROR", "NORMAL")
+    for quality, error in (("DRAFT", 0.05), ("NORMAL", 0.02), ("FINAL", 0.01)):
+        settings.quality = quality
+        assert settings.quality == quality and make(scene).error_target == pytest.approx(error)
+    settings.error_target = 0.03
+    assert settings.quality == "CUSTOM" and make(scene).error_target == pytest.approx(0.03)
+
+
 def test_threads_and_stop_are_blenders(scene, extension):
     make = extension.engine.properties.render_settings
     scene.render.threads_mode, scene.render.threads = "FIXED", 3
@@ -178,6 +190,8 @@ def test_a_missing_helper_is_said_in_the_panel(scene, extension, monkeypatch):
 
 def test_panels_show_what_there_is(scene, extension):
     assert "passes" in drawn(extension, "PHOTON_MAPS_PT_stop").properties
+    scene.photon_maps.stop = "ERROR"
+    assert {"quality", "error_target"} <= set(drawn(extension, "PHOTON_MAPS_PT_stop").properties)
     scene.photon_maps.stop = "TIME"
     assert "time_limit" in drawn(extension, "PHOTON_MAPS_PT_stop").properties
     shown = drawn(extension, "PHOTON_MAPS_PT_passes").properties

@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 3 };
+enum { PM_ABI_VERSION = 4 };
 
 typedef enum pm_status {
     PM_OK = 0,
@@ -79,7 +79,8 @@ typedef enum pm_pass {
     PM_PASS_PHOTON_DENSITY = 10, /* 1 channel: photons per unit of area that the estimates of the pixel counted */
     PM_PASS_SPECULAR = 11,       /* 3 channels: of PM_PASS_INDIRECT what reaches the eye by a specular scattering */
     PM_PASS_SOFT_INDIRECT = 12,  /* 3 channels: the rest of PM_PASS_INDIRECT */
-    PM_PASS_COUNT = 13
+    PM_PASS_ERROR = 13,          /* 1 channel: relative standard error of the pixel, estimated from the passes */
+    PM_PASS_COUNT = 14
 } pm_pass;
 
 /* Which photons: by the bounces before the hit they record. */
@@ -117,6 +118,8 @@ typedef struct pm_settings {
     uint32_t use_shadow_photons; /* 1: no shadow rays where only lit, or only shadow photons of a light lie */
     uint32_t use_photon_guiding; /* 1: diffuse rays go where photons came from */
     uint32_t keep_photons; /* 1: the last pass's photons can be asked for, and light straight from lights is stored */
+    float stop_error;      /* >= 0; above: parts of the picture that are far below this relative error get no further
+                                samples, which needs PM_PASS_ERROR */
 } pm_settings;
 
 typedef struct pm_statistics {
@@ -143,6 +146,11 @@ typedef struct pm_statistics {
     double seconds_trace; /* wall time by phase */
     double seconds_build;
     double seconds_gather;
+    float error; /* estimated relative error of the picture, hypot(noise, blur); infinite without PM_PASS_ERROR and
+                    before the second pass */
+    float noise; /* part of it that varies from pass to pass */
+    float blur;  /* part of it by the width of the kernels */
+    float done;  /* share of the picture that gets no further samples */
 } pm_statistics;
 
 typedef struct pm_photon {

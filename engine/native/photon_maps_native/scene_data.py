@@ -249,6 +249,10 @@ class Statistics:
     seconds_trace: float
     seconds_build: float
     seconds_gather: float
+    error: float  #: relative, estimated from the passes; infinite without Pass.ERROR and before the second pass
+    noise: float  #: the part of it that varies from pass to pass
+    blur: float  #: the part of it by the width of the kernels
+    done: float  #: share of the picture that gets no further samples
 
 
 @dataclass

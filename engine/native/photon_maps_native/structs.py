@@ -184,6 +184,7 @@ class PmSettings(SizedStructure):
         ("use_shadow_photons", c_uint32),
         ("use_photon_guiding", c_uint32),
         ("keep_photons", c_uint32),
+        ("stop_error", c_float),
     ]
 
 
@@ -214,6 +215,10 @@ class PmStatistics(SizedStructure):
         ("seconds_trace", c_double),
         ("seconds_build", c_double),
         ("seconds_gather", c_double),
+        ("error", c_float),
+        ("noise", c_float),
+        ("blur", c_float),
+        ("done", c_float),
     ]
 
 

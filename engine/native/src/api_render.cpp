@@ -44,7 +44,10 @@ pm_status pm_render_read(const pm_render *render, uint32_t pass, float *pixels, 
         if (!film.has(buffer)) throw pm::InvalidOperation("pass " + std::to_string(pass) + " was not asked for");
         pm::require(count == film.size(buffer),
                     "the pass has " + std::to_string(film.size(buffer)) + " floats, not " + std::to_string(count));
-        film.read(buffer, {pixels, count});
+        if (buffer == pm::Buffer::error)
+            render->render.error()->read({pixels, count});
+        else
+            film.read(buffer, {pixels, count});
     });
 }
 
@@ -80,6 +83,11 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->seconds_trace = s.seconds_trace;
         statistics->seconds_build = s.seconds_build;
         statistics->seconds_gather = s.seconds_gather;
+        const pm::ErrorEstimate *error = render->render.error();
+        statistics->error = error ? error->error() : pm::infinity;
+        statistics->noise = error ? error->noise() : pm::infinity;
+        statistics->blur = error ? error->blur() : pm::infinity;
+        statistics->done = render->render.done();
     });
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "camera.h"
+#include "error_estimate.h"
 #include "film.h"
 #include "gather.h"
 #include "guide.h"
@@ -53,7 +54,10 @@ struct RayCounts {
 };
 
 /// Renders one sample a pixel into `film`.
+/// @param error null, or told the blur of its probes
+/// @param left_out tiles that are not rendered
 /// @throws Cancelled once `cancel` is set
-RayCounts render_camera_pass(const CameraPass &pass, Film &film, const std::atomic<bool> *cancel);
+RayCounts render_camera_pass(const CameraPass &pass, Film &film, ErrorEstimate *error,
+                             const std::vector<bool> &left_out, const std::atomic<bool> *cancel);
 
 }  // namespace photon_maps

@@ -11,6 +11,13 @@ namespace {
 /// and cost as much as all the rest of their pixel.
 constexpr float roulette_scale = 8;
 
+/// The same photons gathered within half the radius.
+PhotonGather halved(PhotonGather gather) {
+    gather.kernel.radius /= 2;
+    if (gather.nearest_count > 0) gather.nearest_count = std::max(1u, gather.nearest_count / 4);
+    return gather;
+}
+
 }  // namespace
 
 bool CameraPath::step() {
@@ -111,6 +118,8 @@ void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, c
     const Gathered gathered = gather_radiance(map, hit, shading);
     word_.then(diffuse_lobes).then(last).buffer(sample_) += throughput_ * gathered.radiance;
     sample_.photon_density += average(throughput_) * gathered.density;
+    if (is_probe_)
+        sample_.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading).radiance);
 }
 
 /// Shares the ways to go on by what they bring.
@@ -183,8 +192,9 @@ bool CameraPath::survives(Vec3 weight, float u) {
     return true;
 }
 
-PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, RayCounts &counts) {
-    return CameraPath(pass, sequence, counts).trace(ray);
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
+                              RayCounts &counts) {
+    return CameraPath(pass, is_probe, sequence, counts).trace(ray);
 }
 
 }  // namespace photon_maps

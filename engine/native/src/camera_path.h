@@ -31,7 +31,9 @@
 namespace photon_maps {
 
 /// Follows a ray of the camera.
+/// @param is_probe whether PixelSample::blur is asked for
 /// @param counts is raised by the rays that were traced
-PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, Sequence &sequence, RayCounts &counts);
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
+                              RayCounts &counts);
 
 }  // namespace photon_maps

@@ -124,6 +124,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.pixel_filter_width = source.pixel_filter_width;
     settings.film_transparent = source.film_transparent != 0;
     settings.keep_photons = source.keep_photons != 0;
+    settings.stop_error = source.stop_error;
     settings.threads = thread_count(source.threads);
     settings.buffers = source.passes;
     return settings;

@@ -11,13 +11,19 @@ bool is_of_first_pass(size_t buffer) {
 
 }  // namespace
 
-Film::Film(uint32_t width, uint32_t height, uint32_t wanted) : pixels_(size_t{width} * height) {
-    for (size_t b = 0; b < buffer_count; ++b)
-        if ((wanted >> b) & 1) buffers_[b].resize(pixels_ * buffer_channels[b]);
+Film::Film(uint32_t width, uint32_t height, uint32_t wanted)
+    : tiles_{width, height}, wanted_(wanted), tile_passes_(tiles_.count()) {
+    for (size_t b = 0; b < buffer_count; ++b) {
+        const auto buffer = static_cast<Buffer>(b);
+        // An error is estimated from the combined buffer.
+        const bool is_kept =
+            buffer != Buffer::error && (has(buffer) || (buffer == Buffer::combined && has(Buffer::error)));
+        if (is_kept) buffers_[b].resize(size(buffer));
+    }
 }
 
 void Film::set(Buffer buffer, size_t pixel, Vec3 value) {
-    std::vector<float> &target = buffers_[static_cast<size_t>(buffer)];
+    std::vector<float> &target = values(buffer);
     if (target.empty()) return;
     target[3 * pixel] = value.x;
     target[3 * pixel + 1] = value.y;
@@ -25,15 +31,14 @@ void Film::set(Buffer buffer, size_t pixel, Vec3 value) {
 }
 
 void Film::set(size_t pixel, const PixelSample &sample) {
-    if (std::vector<float> &combined = buffers_[static_cast<size_t>(Buffer::combined)]; !combined.empty()) {
+    if (std::vector<float> &combined = values(Buffer::combined); !combined.empty()) {
         const Vec3 radiance = sample.radiance();
         combined[4 * pixel] = radiance.x;
         combined[4 * pixel + 1] = radiance.y;
         combined[4 * pixel + 2] = radiance.z;
         combined[4 * pixel + 3] = sample.alpha;
     }
-    if (std::vector<float> &depth = buffers_[static_cast<size_t>(Buffer::depth)]; !depth.empty())
-        depth[pixel] = sample.depth;
+    if (std::vector<float> &depth = values(Buffer::depth); !depth.empty()) depth[pixel] = sample.depth;
     set(Buffer::normal, pixel, sample.normal);
     set(Buffer::position, pixel, sample.position);
     set(Buffer::albedo, pixel, sample.albedo);
@@ -44,29 +49,48 @@ void Film::set(size_t pixel, const PixelSample &sample) {
     set(Buffer::soft_indirect, pixel, sample.soft_indirect);
     set(Buffer::caustic, pixel, sample.caustic);
     set(Buffer::background, pixel, sample.background);
-    if (std::vector<float> &density = buffers_[static_cast<size_t>(Buffer::photon_density)]; !density.empty())
+    if (std::vector<float> &density = values(Buffer::photon_density); !density.empty())
         density[pixel] = sample.photon_density;
 }
 
-void Film::add(const Film &pass) {
-    for (size_t b = 0; b < buffer_count; ++b) {
-        if (passes_ > 0 && is_of_first_pass(b)) continue;
-        for (size_t i = 0; i < buffers_[b].size(); ++i) buffers_[b][i] += pass.buffers_[b][i];
+void Film::add(const Film &pass, const std::vector<bool> &left_out) {
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        if (left_out[tile]) continue;
+        for (size_t b = 0; b < buffer_count; ++b) {
+            if (buffers_[b].empty() || (passes_ > 0 && is_of_first_pass(b))) continue;
+            const size_t channels = buffer_channels[b];
+            tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+                for (size_t i = channels * pixel; i < channels * (pixel + 1); ++i)
+                    buffers_[b][i] += pass.buffers_[b][i];
+            });
+        }
+        ++tile_passes_[tile];
     }
     ++passes_;
 }
 
 void Film::read(Buffer buffer, std::span<float> pixels) const {
-    const bool summed = passes_ > 0 && !is_of_first_pass(static_cast<size_t>(buffer));
-    const float count = summed ? static_cast<float>(passes_) : 1.0f;
-    const std::vector<float> &source = values(buffer);
-    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = source[i] / count;
+    const auto b = static_cast<size_t>(buffer);
+    const std::vector<float> &source = buffers_[b];
+    const size_t channels = buffer_channels[b];
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        const bool is_summed = tile_passes_[tile] > 0 && !is_of_first_pass(b);
+        const float count = is_summed ? static_cast<float>(tile_passes_[tile]) : 1.0f;
+        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+            for (size_t i = channels * pixel; i < channels * (pixel + 1); ++i) pixels[i] = source[i] / count;
+        });
+    }
+}
+
+Vec3 Film::sum(size_t pixel) const {
+    const float *combined = &buffers_[static_cast<size_t>(Buffer::combined)][4 * pixel];
+    return {combined[0], combined[1], combined[2]};
 }
 
 size_t Film::memory_bytes() const {
     size_t floats = 0;
     for (const std::vector<float> &buffer : buffers_) floats += buffer.size();
-    return floats * sizeof(float);
+    return floats * sizeof(float) + tile_passes_.size() * sizeof(uint32_t);
 }
 
 }  // namespace photon_maps

@@ -8,11 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "tiles.h"
 #include "vec.h"
 
 namespace photon_maps {
 
-/// Buffers of a picture, numbered as pm_pass.
+/// Buffers of a picture, numbered as pm_pass; the error is not kept but estimated (error_estimate.h).
 enum class Buffer : uint32_t {
     combined,
     depth,
@@ -26,10 +27,11 @@ enum class Buffer : uint32_t {
     background,
     photon_density,
     specular,
-    soft_indirect
+    soft_indirect,
+    error
 };
-constexpr size_t buffer_count = 13;
-constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3, 3};
+constexpr size_t buffer_count = 14;
+constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3, 3, 1};
 
 /// Depth where nothing is hit, as Blender has it.
 constexpr float no_depth = 1e10f;
@@ -41,6 +43,7 @@ struct PixelSample {
     float depth = no_depth;
     Vec3 normal, position, albedo;
     float photon_density = 0;  ///< 1/m2
+    Vec3 blur;  ///< by how much the photons' part of the radiance is more than with kernels of half the radius
 
     Vec3 indirect() const { return specular + soft_indirect; }
     Vec3 radiance() const { return emission + background + direct + indirect() + caustic; }
@@ -51,24 +54,34 @@ class Film {
     /// @param wanted bit 1 << Buffer for each buffer to keep
     Film(uint32_t width, uint32_t height, uint32_t wanted);
 
-    bool has(Buffer buffer) const { return !values(buffer).empty(); }
-    /// Number of floats in a buffer; 0 if it is not kept.
-    size_t size(Buffer buffer) const { return values(buffer).size(); }
+    const Tiles &tiles() const { return tiles_; }
+    bool has(Buffer buffer) const { return ((wanted_ >> static_cast<uint32_t>(buffer)) & 1) != 0; }
+    /// Number of floats in a buffer.
+    size_t size(Buffer buffer) const {
+        return size_t{tiles_.width} * tiles_.height * buffer_channels[static_cast<size_t>(buffer)];
+    }
     /// Sets a pixel (index from the bottom left, row by row) to one sample.
     void set(size_t pixel, const PixelSample &sample);
     /// Adds a pass: a film of the same size.
-    void add(const Film &pass);
+    /// @param left_out for each tile whether the pass has not rendered it
+    void add(const Film &pass, const std::vector<bool> &left_out);
     uint32_t passes() const { return passes_; }
+    /// Passes that a tile was rendered in.
+    uint32_t passes_of(size_t tile) const { return tile_passes_[tile]; }
     /// Copies a buffer: the mean of the passes added; zero without any.
     void read(Buffer buffer, std::span<float> pixels) const;
+    /// The sum of a pixel's radiance over its passes.
+    Vec3 sum(size_t pixel) const;
     size_t memory_bytes() const;
 
   private:
-    const std::vector<float> &values(Buffer buffer) const { return buffers_[static_cast<size_t>(buffer)]; }
+    std::vector<float> &values(Buffer buffer) { return buffers_[static_cast<size_t>(buffer)]; }
     void set(Buffer buffer, size_t pixel, Vec3 value);
 
-    size_t pixels_;
+    Tiles tiles_;
+    uint32_t wanted_;
     uint32_t passes_ = 0;
+    std::vector<uint32_t> tile_passes_;
     std::array<std::vector<float>, buffer_count> buffers_;
 };
 

@@ -18,8 +18,8 @@ constexpr size_t few_sources = 8;
 /// The steps of one path. Those that ask the lights are in path_lights.cpp, the others in camera_path.cpp.
 class CameraPath {
   public:
-    CameraPath(const CameraPass &pass, Sequence &sequence, RayCounts &counts)
-        : pass_(pass), sequence_(sequence), counts_(counts) {}
+    CameraPath(const CameraPass &pass, bool is_probe, Sequence &sequence, RayCounts &counts)
+        : pass_(pass), is_probe_(is_probe), sequence_(sequence), counts_(counts) {}
 
     PixelSample trace(const Ray &ray) {
         ray_ = ray;
@@ -85,6 +85,7 @@ class CameraPath {
     }
 
     const CameraPass &pass_;
+    bool is_probe_;
     Sequence &sequence_;
     RayCounts &counts_;
     PixelSample sample_;

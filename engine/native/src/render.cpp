@@ -44,7 +44,10 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       photon_count_(photon_count_for(settings, camera)),
-      film_(camera.width, camera.height, settings.buffers) {}
+      film_(camera.width, camera.height, settings.buffers),
+      left_out_(film_.tiles().count()) {
+    if (film_.has(Buffer::error)) error_.emplace(camera.width, camera.height);
+}
 
 bool Render::traces(PhotonPurpose purpose) const {
     const bool wants_photons =
@@ -86,7 +89,19 @@ void Render::render_pass(uint32_t index) {
         cancel_ = false;
         throw;
     }
-    film_.add(pass_film);
+    film_.add(pass_film, left_out_);
+    if (error_) error_->add(film_, pass_film, left_out_);
+    leave_out_what_is_done();
+}
+
+/// Tiles whose noise is far below what the whole picture may have add little to it, and cost as much as others.
+void Render::leave_out_what_is_done() {
+    constexpr uint32_t least_passes = 8;              // fewer do not know their own variance
+    constexpr float done = 0.5f, too_blurred = 0.8f;  // of the target
+    // Further passes are what takes blur away.
+    if (!error_ || film_.passes() < least_passes || error_->blur() > too_blurred * settings_.stop_error) return;
+    for (size_t tile = 0; tile < left_out_.size(); ++tile)
+        if (error_->tile_noise(tile) < done * settings_.stop_error) left_out_[tile] = true;
 }
 
 void Render::choose_radii() {
@@ -238,12 +253,13 @@ void Render::render_into(Film &pass_film, uint32_t index) {
                               index,
                               settings_.film_transparent,
                               settings_.threads};
-        spent.rays = render_camera_pass(pass, pass_film, &cancel_);
+        spent.rays = render_camera_pass(pass, pass_film, error_ ? &*error_ : nullptr, left_out_, &cancel_);
     }
 
     // Keep the photons for those who ask, and add up what the pass took.
     const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
-                          pass_film.memory_bytes() + maps.memory_bytes + (coverage_ ? coverage_->memory_bytes() : 0);
+                          pass_film.memory_bytes() + maps.memory_bytes + (coverage_ ? coverage_->memory_bytes() : 0) +
+                          (error_ ? error_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
     total.photons_emitted += photon_count_ * (uint64_t{traces(PhotonPurpose::global)} + uint64_t{radii.caustic > 0});

@@ -29,6 +29,7 @@ struct RenderSettings {
     int threads;
     uint32_t buffers;  ///< bit 1 << Buffer
     bool keep_photons;
+    float stop_error;  ///< tiles far below it are left out of further passes; 0: none is
 };
 
 struct RenderStatistics {
@@ -55,6 +56,12 @@ class Render {
     void cancel() { cancel_ = true; }
 
     const Film &film() const { return film_; }
+    /// Null unless the error buffer is wanted.
+    const ErrorEstimate *error() const { return error_ ? &*error_ : nullptr; }
+    /// Share of the picture's tiles that get no more samples.
+    float done() const {
+        return static_cast<float>(std::ranges::count(left_out_, true)) / static_cast<float>(left_out_.size());
+    }
     const RenderStatistics &statistics() const { return statistics_; }
     bool keeps_photons() const { return settings_.keep_photons; }
     uint64_t photon_count() const { return photon_count_; }
@@ -90,6 +97,7 @@ class Render {
     PhotonImportance importance_of(const TracedPhotons &photons) const;
     PhotonGather gather(const PhotonMap &map, float radius) const;
     void render_into(Film &pass_film, uint32_t index);
+    void leave_out_what_is_done();
 
     Scene &scene_;
     const Lights &lights_;
@@ -102,6 +110,8 @@ class Render {
     EdgeIndex edges_;
     std::optional<Coverage> coverage_;  ///< made along with the first radii, if there is a map
     Film film_;
+    std::optional<ErrorEstimate> error_;
+    std::vector<bool> left_out_;  ///< tiles that get no more samples
     RenderStatistics statistics_;
     std::array<std::vector<Photon>, 3> photons_;  ///< by pm_photon_kind
     Radii last_radii_;

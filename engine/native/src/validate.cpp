@@ -152,6 +152,9 @@ void validate(const pm_settings &settings) {
     require(settings.pixel_filter <= PM_PIXEL_BLACKMAN_HARRIS,
             "unknown pixel filter " + std::to_string(settings.pixel_filter));
     require_range(settings.pixel_filter_width, 0.01f, 100, "pixel_filter_width");
+    require_range(settings.stop_error, 0, 1, "stop_error");
+    require(settings.stop_error == 0 || ((settings.passes >> PM_PASS_ERROR) & 1) != 0,
+            "stop_error needs PM_PASS_ERROR among the passes");
     require(settings.passes != 0 && settings.passes < (1u << PM_PASS_COUNT), "passes names unknown buffers, or none");
 }
 

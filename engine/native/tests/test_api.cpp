@@ -147,7 +147,7 @@ void test_a_room_is_rendered_and_read(Checks &checks, pm_device *device) {
         for (uint32_t pass = 0; pass < 3; ++pass)
             checks.that(pm_render_pass(render.get(), pass) == PM_OK, pm_last_error());
         for (uint32_t pass = 0; pass < PM_PASS_COUNT; ++pass) {
-            const bool is_number = pass == PM_PASS_DEPTH || pass == PM_PASS_PHOTON_DENSITY;
+            const bool is_number = pass == PM_PASS_DEPTH || pass == PM_PASS_PHOTON_DENSITY || pass == PM_PASS_ERROR;
             const bool is_lit =
                 pass < PM_PASS_INDIRECT || (pass == PM_PASS_INDIRECT && integrator != PM_REGULAR_SHADING);
             const size_t channels = pass == PM_PASS_COMBINED ? 4 : is_number ? 1 : 3;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "error_estimate.h"
+
+#include <numeric>
+
+namespace photon_maps {
+
+namespace {
+
+constexpr double probe_count = 4096;
+/// Of pixels left out of means: single ones that hit something bright would hide all others.
+constexpr size_t left_out_pixels = 1000;
+
+/// Mean of all but the largest thousandth; reorders the values.
+float trimmed_mean(std::vector<float> &values, size_t share = left_out_pixels) {
+    if (values.empty()) return 0;
+    const auto end = values.end() - static_cast<std::ptrdiff_t>(values.size() / share);
+    if (end != values.end()) std::nth_element(values.begin(), end, values.end());
+    return static_cast<float>(std::accumulate(values.begin(), end, 0.0) / static_cast<double>(end - values.begin()));
+}
+
+/// Variance of the mean of n values, if they are independent.
+Vec3 variance_of_mean(Vec3 sum, Vec3 squares, uint32_t n) {
+    const auto count = static_cast<float>(n);
+    const Vec3 mean = sum / count;
+    return max(squares / count - mean * mean, {}) / (count - 1);
+}
+
+bool is_power_of_two(uint32_t n) { return (n & (n - 1)) == 0; }
+
+}  // namespace
+
+ErrorEstimate::ErrorEstimate(uint32_t width, uint32_t height)
+    : tiles_{width, height},
+      stride_(static_cast<uint32_t>(std::max(1.0, std::sqrt(static_cast<double>(width) * height / probe_count)))),
+      probe_columns_((width + stride_ - 1) / stride_),
+      squares_(size_t{width} * height),
+      half_(squares_.size()),
+      pass_blur_(size_t{probe_columns_} * ((height + stride_ - 1) / stride_)),
+      probes_(pass_blur_.size()),
+      pixel_squares_(squares_.size()),
+      tile_squares_(tiles_.count()) {}
+
+void ErrorEstimate::add(const Film &film, const Film &pass, const std::vector<bool> &left_out) {
+    // What the pass saw.
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        if (left_out[tile]) continue;
+        tiles_.visit(tile, [&](uint32_t x, uint32_t y, size_t pixel) {
+            const Vec3 radiance = pass.sum(pixel);
+            squares_[pixel] += radiance * radiance;
+            if (!is_probe(x, y)) return;
+            const Vec3 blur = pass_blur_[probe(x, y)];
+            probes_[probe(x, y)].sum += blur;
+            probes_[probe(x, y)].squares += blur * blur;
+        });
+    }
+
+    // What all passes tell.
+    ++passes_;
+    if (passes_ > 1) {
+        find_floor(film);
+        estimate_noise(film);
+        if (is_power_of_two(passes_)) compare_halves(film);
+        gain_ = measured_gain_ *
+                std::pow(static_cast<float>(passes_) / static_cast<float>(measured_at_), std::log2(decay_));
+        estimate_blur(film);
+    }
+    if (is_power_of_two(passes_))
+        for (size_t pixel = 0; pixel < half_.size(); ++pixel) half_[pixel] = film.sum(pixel);
+}
+
+void ErrorEstimate::find_floor(const Film &film) {
+    // The brightest are lamps and skies: how bright has nothing to do with what else is to be seen.
+    constexpr size_t left_out = 100;
+    std::vector<float> radiances;
+    radiances.reserve(squares_.size());
+    for (size_t tile = 0; tile < tiles_.count(); ++tile)
+        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+            radiances.push_back(average(film.sum(pixel)) / static_cast<float>(film.passes_of(tile)));
+        });
+    const float floor = trimmed_mean(radiances, left_out);
+    floor_ = std::max(floor * floor, std::numeric_limits<float>::min());
+}
+
+/// Squares over the squared radiance that they are errors of.
+float ErrorEstimate::relative(Vec3 square, Vec3 mean) const {
+    return (square.x / (mean.x * mean.x + floor_) + square.y / (mean.y * mean.y + floor_) +
+            square.z / (mean.z * mean.z + floor_)) /
+           3;
+}
+
+void ErrorEstimate::estimate_noise(const Film &film) {
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        const uint32_t n = film.passes_of(tile);
+        float sum = 0;
+        size_t count = 0;
+        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+            const Vec3 total = film.sum(pixel);
+            pixel_squares_[pixel] =
+                relative(variance_of_mean(total, squares_[pixel], n), total / static_cast<float>(n));
+            sum += pixel_squares_[pixel];
+            ++count;
+        });
+        tile_squares_[tile] = sum / static_cast<float>(count);
+    }
+    std::vector<float> squares = pixel_squares_;
+    squares_mean_ = trimmed_mean(squares);
+}
+
+/// Passes take consecutive stretches of one low-discrepancy sequence: the mean of twice as many varies by less than
+/// half as much. By how much less cannot be told from the variance between passes, but from how the two halves
+/// differ. If the variance of the mean falls by rho with each doubling, a quarter of the halves' squared difference is
+/// V(n / 2) - V(n) = V(n) (1 - rho) / rho.
+void ErrorEstimate::compare_halves(const Film &film) {
+    std::vector<float> halves, independent;
+    const float half = static_cast<float>(passes_) / 2;
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        if (film.passes_of(tile) != passes_) continue;
+        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+            const Vec3 total = film.sum(pixel), first = half_[pixel];
+            const Vec3 difference = (total - first * 2) / (2 * half);
+            halves.push_back(relative(difference * difference, total / (2 * half)));
+            independent.push_back(pixel_squares_[pixel]);
+        });
+    }
+    const float expected = trimmed_mean(independent);
+    if (!(expected > 0)) return;
+    const float ratio = trimmed_mean(halves) / expected;
+    constexpr float usual_decay = 0.7f, least_decay = 0.4f;
+    if (passes_ == 2) {
+        decay_ = usual_decay;  // it takes four to tell
+    } else if (halves_ratio_ > 0) {
+        const float decay = std::clamp(ratio / halves_ratio_, least_decay, 1.0f);
+        decay_ = passes_ == 4 ? decay : (decay_ + decay) / 2;
+    }
+    halves_ratio_ = ratio;
+    measured_gain_ = ratio * decay_ / (2 - decay_);
+    measured_at_ = passes_;
+}
+
+/// If the error of a kernel grows with the square of its radius, as it does where the light is smooth, it is four
+/// thirds of what a kernel of half the radius takes away. The noise of that difference is subtracted.
+void ErrorEstimate::estimate_blur(const Film &film) {
+    std::vector<float> squares;
+    for (uint32_t y = stride_ / 2; y < tiles_.height; y += stride_)
+        for (uint32_t x = stride_ / 2; x < tiles_.width; x += stride_) {
+            const size_t pixel = size_t{y} * tiles_.width + x;
+            const uint32_t n = film.passes_of(tiles_.of_pixel(pixel));
+            const auto passes = static_cast<float>(n);
+            const Moments &moments = probes_[probe(x, y)];
+            const Vec3 mean = moments.sum / passes;
+            const Vec3 noise = variance_of_mean(moments.sum, moments.squares, n);
+            squares.push_back(relative(mean * mean - noise, film.sum(pixel) / passes));
+        }
+    constexpr float of_the_difference = 4.0f / 3;
+    blur_ = of_the_difference * std::sqrt(std::max(0.0f, trimmed_mean(squares)));
+}
+
+float ErrorEstimate::noise() const { return passes_ > 1 ? std::sqrt(gain_ * squares_mean_) : infinity; }
+
+void ErrorEstimate::read(std::span<float> pixels) const {
+    for (size_t pixel = 0; pixel < pixels.size(); ++pixel) pixels[pixel] = std::sqrt(gain_ * pixel_squares_[pixel]);
+}
+
+size_t ErrorEstimate::memory_bytes() const {
+    return (squares_.size() + half_.size() + pass_blur_.size() + 2 * probes_.size()) * sizeof(Vec3) +
+           (pixel_squares_.size() + tile_squares_.size()) * sizeof(float);
+}
+
+}  // namespace photon_maps
