@@ -42,6 +42,13 @@ ESTIMATES = _items(
             "dense and smoother where they are sparse, but two to eight times slower; pays for sharp "
             "caustics in few passes",
         ),
+        Estimate.ADAPTIVE: (
+            "Adaptive",
+            "Caustics are counted within eight radii at once, and each pixel shows the largest that agrees with the "
+            "smaller ones: sharp where light is focused, smooth elsewhere. A pass is up to a third slower and takes "
+            "more memory; the error of caustics is about half. Radius is the largest. Indirect light is as with "
+            "Radius, which serves it better",
+        ),
     },
 )
 BRDF_DIRECTIONS = _items(

@@ -23,6 +23,7 @@ class Estimate(enum.IntEnum):
 
     RADIUS = 0
     NEAREST = 1
+    ADAPTIVE = 2
 
 
 class BrdfDirection(enum.IntEnum):

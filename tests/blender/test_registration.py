@@ -63,7 +63,7 @@ def test_names_that_do_not_change(scene, extension):
     settings = scene.photon_maps
     numbered = {
         "integrator": ["PHOTON_MAP", "PATH_TRACING", "REGULAR_SHADING"],
-        "estimate": ["RADIUS", "NEAREST"],
+        "estimate": ["RADIUS", "NEAREST", "ADAPTIVE"],
         "brdf_direction": ["PER_PHOTON", "MEAN"],
         "filter": ["NONE", "CONE", "GAUSSIAN", "EPANECHNIKOV"],
         "stop": ["PASSES", "TIME", "ERROR"],

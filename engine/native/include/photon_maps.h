@@ -48,7 +48,13 @@ typedef enum pm_integrator {
 /* Which photons are counted around a point. */
 typedef enum pm_estimate {
     PM_ESTIMATE_RADIUS = 0,
-    PM_ESTIMATE_NEAREST = 1 /* nearest_count of them, or those within the radius where they are fewer */
+    PM_ESTIMATE_NEAREST = 1, /* nearest_count of them, or those within the radius where they are fewer */
+    /* Caustics by eight radii that halve in area, of which the radius is the largest: when the picture is read every
+     * pixel takes the largest that agrees with the smaller ones in the mean over all passes. No choice is fed back into
+     * what is traced, so none brightens the picture. PM_PASS_PHOTON_DENSITY, pm_render_irradiance and surfaces that a
+     * final gather meets go by the largest; surfaces scatter each photon, whatever brdf_direction says. Indirect light
+     * is so smooth that the choice does not pay: as PM_ESTIMATE_RADIUS. */
+    PM_ESTIMATE_ADAPTIVE = 2
 } pm_estimate;
 
 /* By which direction a surface that is not Lambertian scatters photons. */

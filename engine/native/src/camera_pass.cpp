@@ -10,12 +10,13 @@ namespace photon_maps {
 
 namespace {
 
-PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, bool is_probe, RayCounts &counts) {
+PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, bool is_probe, RayCounts &counts,
+                         Levels *levels) {
     Sequence sequence(pass.index, hash(hash(pass.seed, x), y));
     const auto u = sequence.next();
     const Vec2 offset = pass.pixel_sampler.sample(u[0], u[1]);
     const Vec2 pixel{static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y};
-    return trace_camera_path(pass, pass.camera.ray(pixel, {u[2], u[3]}), is_probe, sequence, counts);
+    return trace_camera_path(pass, pass.camera.ray(pixel, {u[2], u[3]}), is_probe, sequence, counts, levels);
 }
 
 }  // namespace
@@ -29,8 +30,13 @@ RayCounts render_camera_pass(const CameraPass &pass, Film &film, ErrorEstimate *
         tiles.visit(tile, [&](uint32_t x, uint32_t y, size_t pixel) {
             throw_if_cancelled(cancel);
             const bool is_probe = error && error->is_probe(x, y);
-            const PixelSample sample = render_pixel(pass, pass.camera.x + x, pass.camera.y + y, is_probe, counts[tile]);
+            NestedFilm *nested = film.nested();
+            std::optional<Levels> levels;
+            if (nested) levels.emplace();
+            const PixelSample sample = render_pixel(pass, pass.camera.x + x, pass.camera.y + y, is_probe, counts[tile],
+                                                    levels ? &*levels : nullptr);
             film.set(pixel, sample);
+            if (levels) nested->set(x, y, *levels);
             if (is_probe) error->set_blur(x, y, sample.blur);
         });
     });

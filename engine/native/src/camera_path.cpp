@@ -103,7 +103,10 @@ void CameraPath::describe(const SurfacePoint &hit, const Shading &shading, float
 /// What the photons bring to a surface that the eye sees: but for a final gather, all but the lights' own.
 void CameraPath::gather(const SurfacePoint &hit, const Shading &shading) {
     if (asks_emitters() && pass_.lights.has_emissive_triangles()) meet_emitters(hit, shading);
-    add_photons(pass_.maps->caustic, hit, shading, glossy_lobes);
+    if (levels_ && word_.diffuse == 0)
+        add_caustic_levels(hit, shading);
+    else
+        add_photons(pass_.maps->caustic, hit, shading, glossy_lobes);
     if (!pass_.use_final_gather) add_photons(pass_.maps->global, hit, shading, diffuse_lobes);
 }
 
@@ -120,6 +123,14 @@ void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, c
     sample_.photon_density += average(throughput_) * gathered.density;
     if (is_probe_)
         sample_.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading).radiance);
+}
+
+/// What the caustic map brings to what the eye sees, by all radii.
+void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shading) {
+    const Levels gathered = throughput_ * gather_levels(pass_.maps->caustic, hit, shading);
+    *levels_ += gathered;
+    sample_.caustic += gathered.color(provisional_level);
+    sample_.photon_density += average(throughput_) * gathered.density;
 }
 
 /// Shares the ways to go on by what they bring.
@@ -193,8 +204,8 @@ bool CameraPath::survives(Vec3 weight, float u) {
 }
 
 PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
-                              RayCounts &counts) {
-    return CameraPath(pass, is_probe, sequence, counts).trace(ray);
+                              RayCounts &counts, Levels *levels) {
+    return CameraPath(pass, is_probe, sequence, counts, levels).trace(ray);
 }
 
 }  // namespace photon_maps

@@ -33,7 +33,9 @@ namespace photon_maps {
 /// Follows a ray of the camera.
 /// @param is_probe whether PixelSample::blur is asked for
 /// @param counts is raised by the rays that were traced
+/// @param levels may be null; else the caustic map is asked by nested radii, and what they bring is added here. The
+/// sample has it by one of them
 PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
-                              RayCounts &counts);
+                              RayCounts &counts, Levels *levels);
 
 }  // namespace photon_maps

@@ -111,6 +111,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.photon_count = source.photon_count;
     settings.kernel = {static_cast<pm_filter>(source.filter), source.radius, source.cone_k};
     settings.nearest_count = source.estimate == PM_ESTIMATE_NEAREST ? source.nearest_count : 0;
+    settings.is_nested = source.estimate == PM_ESTIMATE_ADAPTIVE;
     settings.mean_direction = source.brdf_direction == PM_BRDF_MEAN;
     settings.max_bounces = source.max_bounces;
     settings.use_caustics = source.use_caustics != 0;

@@ -3,46 +3,11 @@
 
 #include <vector>
 
-#include "closure.h"
+#include "candidates.h"
 
 namespace photon_maps {
 
 namespace {
-
-struct Vec3x8 {
-    Float8 x, y, z;
-};
-
-[[gnu::always_inline]] inline Float8 dot(const Vec3x8 &a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-/// Returns eight normals as pack_normal left them, in units of 1/127.
-[[gnu::always_inline]] inline Vec3x8 unpack_normals(Int8 packed) {
-    return {to_float((packed << 24) >> 24), to_float((packed << 16) >> 24), to_float((packed << 8) >> 24)};
-}
-
-/// Returns eight directions as unpack_direction does one.
-[[gnu::always_inline]] inline Vec3x8 unpack_directions(Int8 packed) {
-    const Float8 u = to_float(packed & 0xffff) / 32767.0f - 1;
-    const Float8 v = to_float((packed >> 16) & 0xffff) / 32767.0f - 1;
-    const Float8 z = 1 - abs(u) - abs(v);
-    const Float8 fold = max(-z, Float8{});
-    const Float8 x = u < 0 ? u + fold : u - fold;
-    const Float8 y = v < 0 ? v + fold : v - fold;
-    const Float8 scale = 1 / sqrt(x * x + y * y + z * z);
-    return {x * scale, y * scale, z * scale};
-}
-
-/// Returns by how much photons count where the shading normal differs from the geometric one: each brought its flux
-/// by the cosine to the surface as it is and should bring it by that to the surface as it is shaded (Veach 1997,
-/// section 5.3); none from below the latter.
-[[gnu::always_inline]] inline Float8 shading_weights(Int8 packed_directions, const Query &query) {
-    // The ratio is bounded as shading_ratio's; the least cosine only keeps the division finite.
-    constexpr float least_cosine = 1e-6f;
-    const Vec3x8 travel = unpack_directions(packed_directions);
-    const Float8 geometric = max(-dot(travel, query.normal), broadcast(least_cosine));
-    const Float8 ratio = max(-dot(travel, query.shading_normal), Float8{}) / geometric;
-    return min(ratio, broadcast(max_shading_ratio));
-}
 
 struct Sum {
     Vec3 flux;  ///< W, weighted
@@ -50,29 +15,11 @@ struct Sum {
     float weight;  ///< of the photons, by the kernel alone
 };
 
-/// By what the closures of a query multiply the flux of a photon: the scattered share of its light, which came by the
-/// geometric cosine.
-Vec3 scattered_share(const Query &query, Vec3 incoming) {
-    constexpr float least_cosine = 1e-6f;
-    float cosine = std::max(dot(incoming, query.normal), least_cosine);
-    // The ratio of the cosines is bounded as shading_ratio is, and nothing else: sheen seen from the side has no bound.
-    for (const Closure &closure : query.shading->scattering())
-        if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen)
-            cosine = std::max(cosine, dot(incoming, closure.normal) / max_shading_ratio);
-    return evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance) / cosine;
-}
-
 /// What a query sums over the photons around it; called with runs of photons.
 class Gather {
   public:
     Gather(const PhotonArrays &photons, const Query &query, const Kernel &kernel, std::span<const Barrier> barriers)
-        : photons_(photons),
-          query_(query),
-          kernel_(kernel),
-          barriers_(barriers),
-          frame_(query.normal),
-          inverse_radius_(1 / kernel.radius),
-          is_smooth_(!query.shading && !(query.shading_normal == query.normal)) {}
+        : photons_(photons), query_(query), kernel_(kernel), test_(photons, query, kernel.radius, barriers) {}
 
     [[gnu::always_inline]] void operator()(size_t begin, size_t end) {
         for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
@@ -89,24 +36,11 @@ class Gather {
 
   private:
     [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
-        // Within the radius and near the plane; lengths are in radii.
-        const Vec3 p = query_.position, n = query_.normal;
-        const Vec3x8 d{(load(&photons_.x[i]) - p.x) * inverse_radius_, (load(&photons_.y[i]) - p.y) * inverse_radius_,
-                       (load(&photons_.z[i]) - p.z) * inverse_radius_};
-        const Float8 distance_squared = d.x * d.x + d.y * d.y + d.z * d.z;
-        mask &= (distance_squared < 1) & (abs(dot(d, n)) < plane_tolerance);
+        const Candidates found = test_(i, mask);
+        mask = found.mask;
         if (bytes(mask) == 0) return;
-
-        // On the same side of the same surface, and not behind an edge of it.
-        mask &= dot(unpack_normals(load(&photons_.normal[i])), n) > normal_tolerance * 127;
-        if (!barriers_.empty()) {
-            const Float8 u = dot(d, frame_.x), v = dot(d, frame_.y);
-            for (const Barrier &barrier : barriers_) mask &= ~barrier.hides(u, v);
-        }
-
-        Float8 weight = kernel_.weights(distance_squared);
-        if (is_smooth_) weight *= shading_weights(load(&photons_.direction[i]), query_);
-        if (query_.is_bent) mask &= dot(unpack_directions(load(&photons_.direction[i])), n) < 0;
+        Float8 weight = kernel_.weights(found.distance_squared);
+        if (test_.is_smooth()) weight *= shading_weights(load(&photons_.direction[i]), query_);
         weight = select(mask, weight);
         weight_ += weight;
         count_ += mask;
@@ -142,10 +76,7 @@ class Gather {
     const PhotonArrays &photons_;
     const Query &query_;
     const Kernel &kernel_;
-    std::span<const Barrier> barriers_;
-    Frame frame_;
-    float inverse_radius_;
-    bool is_smooth_;
+    CandidateTest test_;
     Float8 red_{}, green_{}, blue_{}, weight_{};
     Vec3x8 direction_{};  ///< of travel, times flux
     Int8 count_{};        ///< less the photons that counted
@@ -154,14 +85,8 @@ class Gather {
 }  // namespace
 
 Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &asked) {
-    // Among very many edges, such as those of leaves, a smaller disc meets few enough.
-    constexpr int most_halvings = 16;
     Kernel kernel = asked;
-    KernelRegion region(edges, query.position, query.normal, kernel);
-    for (int halving = 0; region.is_crowded() && halving < most_halvings; ++halving) {
-        kernel.radius /= 2;
-        region = KernelRegion(edges, query.position, query.normal, kernel);
-    }
+    const KernelRegion region = region_of(edges, query, kernel);
     const Sum sum = vectorized([&] {
         Gather gather(map.photons(), query, kernel, region.barriers());
         map.visit_range(query.position, kernel.radius, gather);

@@ -11,8 +11,9 @@ bool is_of_first_pass(size_t buffer) {
 
 }  // namespace
 
-Film::Film(uint32_t width, uint32_t height, uint32_t wanted)
+Film::Film(uint32_t width, uint32_t height, uint32_t wanted, bool is_nested)
     : tiles_{width, height}, wanted_(wanted), tile_passes_(tiles_.count()) {
+    if (is_nested) nested_.emplace(width, height);
     for (size_t b = 0; b < buffer_count; ++b) {
         const auto buffer = static_cast<Buffer>(b);
         // An error is estimated from the combined buffer.
@@ -55,7 +56,7 @@ void Film::set(size_t pixel, const PixelSample &sample) {
 
 void Film::add(const Film &pass, const std::vector<bool> &left_out) {
     for (size_t tile = 0; tile < tiles_.count(); ++tile) {
-        if (left_out[tile]) continue;
+        if (!left_out.empty() && left_out[tile]) continue;
         for (size_t b = 0; b < buffer_count; ++b) {
             if (buffers_[b].empty() || (passes_ > 0 && is_of_first_pass(b))) continue;
             const size_t channels = buffer_channels[b];
@@ -64,6 +65,7 @@ void Film::add(const Film &pass, const std::vector<bool> &left_out) {
                     buffers_[b][i] += pass.buffers_[b][i];
             });
         }
+        if (nested_) nested_->add(*pass.nested_, tile);
         ++tile_passes_[tile];
     }
     ++passes_;
@@ -80,6 +82,8 @@ void Film::read(Buffer buffer, std::span<float> pixels) const {
             for (size_t i = channels * pixel; i < channels * (pixel + 1); ++i) pixels[i] = source[i] / count;
         });
     }
+    if (nested_ && passes_ > 0 && (buffer == Buffer::combined || buffer == Buffer::caustic))
+        nested_->choose(tile_passes_, pixels, channels);
 }
 
 Vec3 Film::sum(size_t pixel) const {
@@ -90,7 +94,7 @@ Vec3 Film::sum(size_t pixel) const {
 size_t Film::memory_bytes() const {
     size_t floats = 0;
     for (const std::vector<float> &buffer : buffers_) floats += buffer.size();
-    return floats * sizeof(float) + tile_passes_.size() * sizeof(uint32_t);
+    return floats * sizeof(float) + tile_passes_.size() * sizeof(uint32_t) + (nested_ ? nested_->memory_bytes() : 0);
 }
 
 }  // namespace photon_maps

@@ -5,9 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "nested_film.h"
 #include "tiles.h"
 #include "vec.h"
 
@@ -52,7 +54,8 @@ struct PixelSample {
 class Film {
   public:
     /// @param wanted bit 1 << Buffer for each buffer to keep
-    Film(uint32_t width, uint32_t height, uint32_t wanted);
+    /// @param is_nested caustics come by nested radii as well: samples have them by one, reading gives the chosen ones
+    Film(uint32_t width, uint32_t height, uint32_t wanted, bool is_nested = false);
 
     const Tiles &tiles() const { return tiles_; }
     bool has(Buffer buffer) const { return ((wanted_ >> static_cast<uint32_t>(buffer)) & 1) != 0; }
@@ -63,11 +66,13 @@ class Film {
     /// Sets a pixel (index from the bottom left, row by row) to one sample.
     void set(size_t pixel, const PixelSample &sample);
     /// Adds a pass: a film of the same size.
-    /// @param left_out for each tile whether the pass has not rendered it
-    void add(const Film &pass, const std::vector<bool> &left_out);
+    /// @param left_out for each tile whether the pass has not rendered it; empty: it has rendered all
+    void add(const Film &pass, const std::vector<bool> &left_out = {});
     uint32_t passes() const { return passes_; }
     /// Passes that a tile was rendered in.
     uint32_t passes_of(size_t tile) const { return tile_passes_[tile]; }
+    /// Caustics by nested radii; null where they are not kept.
+    NestedFilm *nested() { return nested_ ? &*nested_ : nullptr; }
     /// Copies a buffer: the mean of the passes added; zero without any.
     void read(Buffer buffer, std::span<float> pixels) const;
     /// The sum of a pixel's radiance over its passes.
@@ -83,6 +88,7 @@ class Film {
     uint32_t passes_ = 0;
     std::vector<uint32_t> tile_passes_;
     std::array<std::vector<float>, buffer_count> buffers_;
+    std::optional<NestedFilm> nested_;
 };
 
 }  // namespace photon_maps

@@ -28,39 +28,79 @@ SurfacePoint turned(const SurfacePoint &hit) {
     return back;
 }
 
+/// The discs of the levels at a point. Where the largest is filled, so are those within it.
+LevelDiscs discs_at(const PhotonGather &gather, const SurfacePoint &hit) {
+    LevelDiscs discs{gather.kernel.radius * sqrt(level_areas()), broadcast(1)};
+    const Coverage::Disc largest = gather.coverage->disc(hit, gather.kernel.radius);
+    if (largest.share == 1 && largest.radius == gather.kernel.radius) return discs;
+    for (size_t level = 0; level < level_count; ++level) {
+        const Coverage::Disc disc = gather.coverage->disc(hit, discs.radius[level]);
+        discs.radius[level] = disc.radius;
+        discs.share[level] = disc.share;
+    }
+    return discs;
+}
+
+Levels levels_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
+    const LevelDiscs discs = discs_at(gather, hit);
+    const bool is_bent = discs.share[level_count - 1] != 1;
+    const Query query{hit.position, hit.normal, closure_normal, is_bent, shading};
+    return estimate_levels(*gather.map, *gather.edges, query, gather.kernel, discs);
+}
+
+/// What a surface's diffuse closures ask of the photons. Lambertian ones share one irradiance, as long as they share
+/// their normal.
+struct DiffuseParts {
+    Vec3 reflected, transmitted, normal, back_normal;
+    bool is_simple = true, reflects = false;
+
+    explicit DiffuseParts(const Shading &shading) {
+        for (const Closure &closure : shading.scattering()) {
+            if (closure.type == ClosureType::translucent) {
+                transmitted += closure.weight;
+                back_normal = -closure.normal;
+            } else if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen) {
+                is_simple = is_simple && is_lambertian(closure) && (!reflects || closure.normal == normal);
+                reflects = true;
+                reflected += closure.weight;
+                normal = closure.normal;
+            }
+        }
+    }
+};
+
 }  // namespace
 
 Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading) {
     Gathered gathered;
     if (gather.empty()) return gathered;
-
-    // Lambertian closures share one irradiance, as long as they share their normal.
-    Vec3 reflected, transmitted, normal, back_normal;
-    bool is_simple = true, reflects = false;
-    for (const Closure &closure : shading.scattering()) {
-        if (closure.type == ClosureType::translucent) {
-            transmitted += closure.weight;
-            back_normal = -closure.normal;
-        } else if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen) {
-            is_simple = is_simple && is_lambertian(closure) && (!reflects || closure.normal == normal);
-            reflects = true;
-            reflected += closure.weight;
-            normal = closure.normal;
-        }
-    }
-    if (reflects) {
+    const DiffuseParts parts(shading);
+    if (parts.reflects) {
         const Estimate estimate =
-            estimate_at(gather, hit, is_simple ? normal : hit.normal, is_simple ? nullptr : &shading);
-        gathered.radiance += is_simple ? reflected * estimate.value / pi : estimate.value;
+            estimate_at(gather, hit, parts.is_simple ? parts.normal : hit.normal, parts.is_simple ? nullptr : &shading);
+        gathered.radiance += parts.is_simple ? parts.reflected * estimate.value / pi : estimate.value;
         gathered.density += estimate.density;
     }
 
     // Light that lands on the other side and comes through.
-    if (max_component(transmitted) > 0) {
-        const Estimate estimate = estimate_at(gather, turned(hit), back_normal, nullptr);
-        gathered.radiance += transmitted * estimate.value / pi;
+    if (max_component(parts.transmitted) > 0) {
+        const Estimate estimate = estimate_at(gather, turned(hit), parts.back_normal, nullptr);
+        gathered.radiance += parts.transmitted * estimate.value / pi;
         gathered.density += estimate.density;
     }
+    return gathered;
+}
+
+Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading) {
+    Levels gathered;
+    if (gather.empty()) return gathered;
+    const DiffuseParts parts(shading);
+    if (parts.reflects && parts.is_simple)
+        gathered += parts.reflected / pi * levels_at(gather, hit, parts.normal, nullptr);
+    else if (parts.reflects)
+        gathered += levels_at(gather, hit, hit.normal, &shading);
+    if (max_component(parts.transmitted) > 0)
+        gathered += parts.transmitted / pi * levels_at(gather, turned(hit), parts.back_normal, nullptr);
     return gathered;
 }
 

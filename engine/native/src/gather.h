@@ -4,7 +4,7 @@
 
 #include "closure.h"
 #include "coverage.h"
-#include "estimate.h"
+#include "nested_estimate.h"
 #include "scene.h"
 
 namespace photon_maps {
@@ -28,5 +28,7 @@ struct Gathered {
 
 /// Gathers the photons on the side that is seen and, for what shines through, on the other side.
 Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading);
+/// The same by the eight radii of which the kernel's is the largest. Every photon is weighed by itself.
+Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading);
 
 }  // namespace photon_maps

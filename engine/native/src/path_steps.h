@@ -18,8 +18,8 @@ constexpr size_t few_sources = 8;
 /// The steps of one path. Those that ask the lights are in path_lights.cpp, the others in camera_path.cpp.
 class CameraPath {
   public:
-    CameraPath(const CameraPass &pass, bool is_probe, Sequence &sequence, RayCounts &counts)
-        : pass_(pass), is_probe_(is_probe), sequence_(sequence), counts_(counts) {}
+    CameraPath(const CameraPass &pass, bool is_probe, Sequence &sequence, RayCounts &counts, Levels *levels)
+        : pass_(pass), is_probe_(is_probe), sequence_(sequence), counts_(counts), levels_(levels) {}
 
     PixelSample trace(const Ray &ray) {
         ray_ = ray;
@@ -51,6 +51,7 @@ class CameraPath {
     void gather(const SurfacePoint &hit, const Shading &shading);
     void gather_all(const SurfacePoint &hit, const Shading &shading);
     void add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes last);
+    void add_caustic_levels(const SurfacePoint &hit, const Shading &shading);
     void plan(const SurfacePoint &hit, const Shading &shading);
     std::optional<ScatterSample> draw(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
                                       const std::array<float, 3> &u) const;
@@ -88,6 +89,7 @@ class CameraPath {
     bool is_probe_;
     Sequence &sequence_;
     RayCounts &counts_;
+    Levels *levels_;  ///< of the caustic map; null: it is asked by one radius
     PixelSample sample_;
     Ray ray_;
     RayState state_;

@@ -12,6 +12,8 @@ namespace photon_maps {
 namespace {
 
 constexpr uint32_t photon_stream = 0x70686f74, caustic_stream = 0x63617573, camera_stream = 0x63616d65;
+/// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
+constexpr float largest_nested = 2;
 constexpr uint64_t min_photon_count = 1 << 16, max_photon_count = 1 << 22;
 
 /// Adds the time that a scope takes.
@@ -44,7 +46,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       photon_count_(photon_count_for(settings, camera)),
-      film_(camera.width, camera.height, settings.buffers),
+      film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
     if (film_.has(Buffer::error)) error_.emplace(camera.width, camera.height);
 }
@@ -55,6 +57,11 @@ bool Render::traces(PhotonPurpose purpose) const {
     if (!wants_photons || emission_.empty() || scene_.instances.empty()) return false;
     return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
                                              : settings_.use_indirect;
+}
+
+/// Whether caustics are gathered by nested radii.
+bool Render::is_nested() const {
+    return settings_.is_nested && settings_.integrator == Integrator::photon_map && traces(PhotonPurpose::caustic);
 }
 
 /// Whether photons tell camera paths where to go on diffusely.
@@ -82,7 +89,7 @@ PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
 }
 
 void Render::render_pass(uint32_t index) {
-    Film pass_film(camera_.width, camera_.height, settings_.buffers);
+    Film pass_film(camera_.width, camera_.height, settings_.buffers, is_nested());
     try {
         render_into(pass_film, index);
     } catch (const Cancelled &) {
@@ -117,6 +124,7 @@ void Render::choose_radii() {
         radii.caustic = 0;
     else if (is_chosen)
         radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
+    if (is_chosen && is_nested()) radii.caustic *= largest_nested;
 
     // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
     Kernel largest = settings_.kernel;

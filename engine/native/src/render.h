@@ -18,6 +18,7 @@ struct RenderSettings {
     uint64_t photon_count;   ///< per pass and map; 0: as many as the frame has pixels, within bounds
     Kernel kernel;           ///< of the first pass; radius 0: chosen from pilot photons, for each map its own
     uint32_t nearest_count;  ///< of the photons around a point, within the kernel's radius; 0: all within it
+    bool is_nested;          ///< caustics by nested radii, of which the film chooses
     bool mean_direction;     ///< surfaces that are not Lambertian scatter photons by their mean direction
     uint32_t max_bounces;
     bool use_caustics, use_indirect, use_final_gather, use_shadow_photons, use_photon_guiding;
@@ -87,6 +88,7 @@ class Render {
     };
 
     bool traces(PhotonPurpose purpose) const;
+    bool is_nested() const;
     bool is_guided() const;
     bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;

@@ -144,7 +144,7 @@ void validate(const pm_settings &settings) {
     if (settings.radius != 0) require_range(settings.radius, min_radius, max_coordinate, "radius");
     require(settings.filter <= PM_FILTER_EPANECHNIKOV, "unknown filter " + std::to_string(settings.filter));
     require(settings.cone_k >= 1 && std::isfinite(settings.cone_k), "cone_k must be a finite number of at least 1");
-    require(settings.estimate <= PM_ESTIMATE_NEAREST, "unknown estimate " + std::to_string(settings.estimate));
+    require(settings.estimate <= PM_ESTIMATE_ADAPTIVE, "unknown estimate " + std::to_string(settings.estimate));
     require(settings.nearest_count >= 1 && settings.nearest_count <= 1'000'000, "nearest_count must be from 1 to 1e6");
     require(settings.brdf_direction <= PM_BRDF_MEAN,
             "unknown brdf_direction " + std::to_string(settings.brdf_direction));

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "nested_estimate.h"
+
+#include "candidates.h"
+
+namespace photon_maps {
+
+namespace {
+
+/// What a query sums over the photons around it, for eight radii; called with runs of photons.
+class LevelGather {
+  public:
+    /// @param kernel the largest
+    /// @param per_area the square of its radius over those of the levels
+    LevelGather(const PhotonArrays &photons, const Query &query, const Kernel &kernel,
+                std::span<const Barrier> barriers, Float8 per_area)
+        : photons_(photons),
+          query_(query),
+          kernel_(kernel),
+          test_(photons, query, kernel.radius, barriers),
+          per_area_(per_area) {}
+
+    [[gnu::always_inline]] void operator()(size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
+    }
+
+    const Levels &sum() const { return sum_; }
+    Float8 weight() const { return weight_; }
+
+  private:
+    /// Puts eight photons to the tests of the largest radius, then adds those that passed one by one.
+    [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
+        const Candidates found = test_(i, mask);
+        uint64_t left = bytes(found.mask);
+        if (left == 0) return;
+        Float8 factors = broadcast(1);
+        if (test_.is_smooth()) factors = shading_weights(load(&photons_.direction[i]), query_);
+        // The disc that just holds a photon, by its distance and by its height.
+        const Float8 height = found.height * (1 / plane_tolerance);
+        const Float8 least = max(found.distance_squared, height * height);
+        while (left != 0) {
+            const uint32_t lane = take_first(left);
+            add(i + lane, found.distance_squared[lane], least[lane], factors[lane]);
+        }
+    }
+
+    [[gnu::always_inline]] void add(size_t photon, float distance_squared, float least, float factor) {
+        const Int8 mask = least * per_area_ < 1;
+        const Float8 weight = factor * select(mask, kernel_.weights(distance_squared * per_area_));
+        Vec3 flux{photons_.red[photon], photons_.green[photon], photons_.blue[photon]};
+        if (query_.shading) flux *= scattered_share(query_, -unpack_direction(photons_.direction[photon]));
+        sum_.red += weight * flux.x;
+        sum_.green += weight * flux.y;
+        sum_.blue += weight * flux.z;
+        const Float8 brought = weight * average(flux);
+        sum_.variance += brought * brought;
+        weight_ += weight;
+    }
+
+    const PhotonArrays &photons_;
+    const Query &query_;
+    const Kernel &kernel_;
+    CandidateTest test_;
+    Float8 per_area_;
+    Levels sum_;
+    Float8 weight_{};
+};
+
+/// Returns the share of each level's disc that the barriers of the largest one leave.
+Float8 shares_of(const KernelRegion &largest, const Kernel &kernel, Float8 radii) {
+    Float8 shares = broadcast(largest.share());
+    if (largest.barriers().empty()) return shares;
+    std::array<Barrier, KernelRegion::max_barriers> scaled;
+    const std::span<const Barrier> barriers = largest.barriers();
+    for (size_t level = 0; level < level_count; ++level) {
+        if (radii[level] == kernel.radius) continue;
+        const float scale = kernel.radius / radii[level];
+        std::ranges::transform(barriers, scaled.begin(), [&](const Barrier &b) {
+            return Barrier{b.ax * scale, b.ay * scale, b.bx * scale, b.by * scale};
+        });
+        shares[level] = KernelRegion(std::span(scaled).first(barriers.size()), kernel).share();
+    }
+    return shares;
+}
+
+}  // namespace
+
+Levels estimate_levels(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel,
+                       const LevelDiscs &discs) {
+    // The largest disc, and the part of each that edges leave.
+    Kernel largest = kernel;
+    largest.radius = discs.radius[0];
+    for (size_t level = 1; level < level_count; ++level) largest.radius = std::max(largest.radius, discs.radius[level]);
+    const KernelRegion region = region_of(edges, query, largest);
+    const Float8 radii = min(discs.radius, broadcast(largest.radius));
+    const Float8 shares = shares_of(region, largest, radii) * discs.share;
+
+    // Sums over the photons.
+    const Float8 per_area = largest.radius * largest.radius / (radii * radii);
+    Float8 weight;
+    Levels sum = vectorized([&] {
+        LevelGather gather(map.photons(), query, largest, region.barriers(), per_area);
+        map.visit_range(query.position, largest.radius, gather);
+        weight = gather.weight();
+        return gather.sum();
+    });
+
+    // Per area.
+    const Float8 density = per_area / (largest.norm() * shares);
+    sum.red *= density;
+    sum.green *= density;
+    sum.blue *= density;
+    sum.variance *= density * density;
+    constexpr size_t last = level_count - 1;
+    sum.density = weight[last] * density[last];
+    return sum;
+}
+
+}  // namespace photon_maps
