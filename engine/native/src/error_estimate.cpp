@@ -26,6 +26,20 @@ Vec3 variance_of_mean(Vec3 sum, Vec3 squares, uint32_t n) {
     return max(squares / count - mean * mean, {}) / (count - 1);
 }
 
+/// By how much the mean of n passes varies more than it would if its variance went on as at n = doubling <= n, a power
+/// of two, by half for each doubling: it is the mean of stretches of the low-discrepancy sequence whose lengths are
+/// powers of two, the longer the more evenly spread.
+/// @param decay by how much more than half the variance of a stretch falls with its doubling
+float between_doublings(uint32_t n, uint32_t doubling, float decay) {
+    float sum = 0;
+    float variance = 1;  // of a stretch, over that of `doubling` passes
+    for (uint32_t length = doubling; length > 0; length /= 2) {
+        if (n & length) sum += static_cast<float>(length) * static_cast<float>(length) * variance;
+        variance *= 2 / decay;
+    }
+    return sum / (static_cast<float>(n) * static_cast<float>(doubling));
+}
+
 bool is_power_of_two(uint32_t n) { return (n & (n - 1)) == 0; }
 
 }  // namespace
@@ -39,6 +53,7 @@ ErrorEstimate::ErrorEstimate(uint32_t width, uint32_t height)
       pass_blur_(size_t{probe_columns_} * ((height + stride_ - 1) / stride_)),
       probes_(pass_blur_.size()),
       pixel_squares_(squares_.size()),
+      nested_squares_(squares_.size()),
       tile_squares_(tiles_.count()) {}
 
 void ErrorEstimate::add(const Film &film, const Film &pass, const std::vector<bool> &left_out) {
@@ -61,9 +76,10 @@ void ErrorEstimate::add(const Film &film, const Film &pass, const std::vector<bo
         find_floor(film);
         estimate_noise(film);
         if (is_power_of_two(passes_)) compare_halves(film);
-        gain_ = measured_gain_ *
-                std::pow(static_cast<float>(passes_) / static_cast<float>(measured_at_), std::log2(decay_));
+        gain_ = measured_gain_ * between_doublings(passes_, measured_at_, decay_);
         estimate_blur(film);
+        if (film.nested()) add_nested(film);
+        sum_up();
     }
     if (is_power_of_two(passes_))
         for (size_t pixel = 0; pixel < half_.size(); ++pixel) half_[pixel] = film.sum(pixel);
@@ -90,21 +106,11 @@ float ErrorEstimate::relative(Vec3 square, Vec3 mean) const {
 }
 
 void ErrorEstimate::estimate_noise(const Film &film) {
-    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
-        const uint32_t n = film.passes_of(tile);
-        float sum = 0;
-        size_t count = 0;
-        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
-            const Vec3 total = film.sum(pixel);
-            pixel_squares_[pixel] =
-                relative(variance_of_mean(total, squares_[pixel], n), total / static_cast<float>(n));
-            sum += pixel_squares_[pixel];
-            ++count;
-        });
-        tile_squares_[tile] = sum / static_cast<float>(count);
+    for (size_t pixel = 0; pixel < squares_.size(); ++pixel) {
+        const uint32_t n = film.passes_of(tiles_.of_pixel(pixel));
+        const Vec3 total = film.sum(pixel);
+        pixel_squares_[pixel] = relative(variance_of_mean(total, squares_[pixel], n), total / static_cast<float>(n));
     }
-    std::vector<float> squares = pixel_squares_;
-    squares_mean_ = trimmed_mean(squares);
 }
 
 /// Passes take consecutive stretches of one low-discrepancy sequence: the mean of twice as many varies by less than
@@ -126,12 +132,13 @@ void ErrorEstimate::compare_halves(const Film &film) {
     const float expected = trimmed_mean(independent);
     if (!(expected > 0)) return;
     const float ratio = trimmed_mean(halves) / expected;
-    constexpr float usual_decay = 0.7f, least_decay = 0.4f;
+    constexpr float usual_decay = 0.85f, least_decay = 0.4f;
     if (passes_ == 2) {
         decay_ = usual_decay;  // it takes four to tell
     } else if (halves_ratio_ > 0) {
         const float decay = std::clamp(ratio / halves_ratio_, least_decay, 1.0f);
-        decay_ = passes_ == 4 ? decay : (decay_ + decay) / 2;
+        // The more passes, the less they stratify each other further.
+        decay_ = (1 + (passes_ == 4 ? decay : (decay_ * 2 - 1 + decay) / 2)) / 2;
     }
     halves_ratio_ = ratio;
     measured_gain_ = ratio * decay_ / (2 - decay_);
@@ -156,15 +163,45 @@ void ErrorEstimate::estimate_blur(const Film &film) {
     blur_ = of_the_difference * std::sqrt(std::max(0.0f, trimmed_mean(squares)));
 }
 
-float ErrorEstimate::noise() const { return passes_ > 1 ? std::sqrt(gain_ * squares_mean_) : infinity; }
+/// Where caustics are read by another radius than the passes' own, that one's variance takes the place of theirs, and
+/// its blur counts too.
+void ErrorEstimate::add_nested(const Film &film) {
+    const std::vector<float> levels = film.nested()->chosen_levels();
+    std::vector<float> blur(squares_.size());
+    for (size_t pixel = 0; pixel < squares_.size(); ++pixel) {
+        const auto x = static_cast<uint32_t>(pixel % tiles_.width), y = static_cast<uint32_t>(pixel / tiles_.width);
+        const uint32_t n = film.passes_of(tiles_.of_pixel(pixel));
+        const NestedFilm::Error error = film.nested()->error(x, y, levels[pixel], n);
+        const Vec3 mean = film.sum(pixel) / static_cast<float>(n);
+        const float change = error.variance - gain_ * error.provisional_variance;
+        nested_squares_[pixel] = relative({change, change, change}, mean);
+        blur[pixel] = relative({error.blur, error.blur, error.blur}, mean);
+    }
+    blur_ = std::sqrt(std::max(0.0f, blur_ * blur_ + trimmed_mean(blur)));
+}
+
+void ErrorEstimate::sum_up() {
+    std::vector<float> squares(squares_.size());
+    for (size_t tile = 0; tile < tiles_.count(); ++tile) {
+        float sum = 0, count = 0;
+        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
+            squares[pixel] = pixel_square(pixel);
+            sum += squares[pixel];
+            ++count;
+        });
+        tile_squares_[tile] = sum / count;
+    }
+    noise_ = std::sqrt(std::max(0.0f, trimmed_mean(squares)));
+}
 
 void ErrorEstimate::read(std::span<float> pixels) const {
-    for (size_t pixel = 0; pixel < pixels.size(); ++pixel) pixels[pixel] = std::sqrt(gain_ * pixel_squares_[pixel]);
+    for (size_t pixel = 0; pixel < pixels.size(); ++pixel)
+        pixels[pixel] = std::sqrt(std::max(0.0f, pixel_square(pixel)));
 }
 
 size_t ErrorEstimate::memory_bytes() const {
     return (squares_.size() + half_.size() + pass_blur_.size() + 2 * probes_.size()) * sizeof(Vec3) +
-           (pixel_squares_.size() + tile_squares_.size()) * sizeof(float);
+           (pixel_squares_.size() + nested_squares_.size() + tile_squares_.size()) * sizeof(float);
 }
 
 }  // namespace photon_maps

@@ -25,13 +25,13 @@ class ErrorEstimate {
     void add(const Film &film, const Film &pass, const std::vector<bool> &left_out);
 
     /// Relative standard error of the picture; infinite before the second pass, as nothing is known then.
-    float noise() const;
+    float noise() const { return noise_; }
     /// Relative error by the width of the kernels, which no further pass of the same radius would take away.
     float blur() const { return blur_; }
     float error() const { return std::hypot(noise(), blur()); }
 
     /// Relative standard error of a tile: the root mean square over its pixels.
-    float tile_noise(size_t tile) const { return std::sqrt(gain_ * tile_squares_[tile]); }
+    float tile_noise(size_t tile) const { return std::sqrt(std::max(tile_squares_[tile], 0.0f)); }
     /// Copies the relative standard error of each pixel; zero before the second pass.
     void read(std::span<float> pixels) const;
     size_t memory_bytes() const;
@@ -48,6 +48,9 @@ class ErrorEstimate {
     void estimate_noise(const Film &film);
     void compare_halves(const Film &film);
     void estimate_blur(const Film &film);
+    void add_nested(const Film &film);
+    void sum_up();
+    float pixel_square(size_t pixel) const { return gain_ * pixel_squares_[pixel] + nested_squares_[pixel]; }
 
     Tiles tiles_;
     uint32_t stride_, probe_columns_;
@@ -56,10 +59,11 @@ class ErrorEstimate {
     std::vector<Vec3> half_;       ///< sum over the passes up to the last power of two
     std::vector<Vec3> pass_blur_;  ///< of the present pass, by probe
     std::vector<Moments> probes_;
-    std::vector<float> pixel_squares_;  ///< relative variance of each pixel's mean, as if passes were independent
-    std::vector<float> tile_squares_;   ///< mean of those
-    float floor_ = 0;                   ///< squared
-    float squares_mean_ = 0;            ///< of the pixels' relative variances, the worst left out
+    std::vector<float> pixel_squares_;   ///< relative variance of each pixel's mean, as if passes were independent
+    std::vector<float> nested_squares_;  ///< what choosing among nested radii adds to each pixel's square, or takes off
+    std::vector<float> tile_squares_;    ///< mean of both together
+    float floor_ = 0;                    ///< squared
+    float noise_ = infinity;
     /// Passes stratify each other: by how much less their mean varies than that of independent ones, when last
     /// measured; how that goes on with each doubling; and after how many passes it was measured.
     float measured_gain_ = 1, decay_ = 1;

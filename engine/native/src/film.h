@@ -73,6 +73,7 @@ class Film {
     uint32_t passes_of(size_t tile) const { return tile_passes_[tile]; }
     /// Caustics by nested radii; null where they are not kept.
     NestedFilm *nested() { return nested_ ? &*nested_ : nullptr; }
+    const NestedFilm *nested() const { return nested_ ? &*nested_ : nullptr; }
     /// Copies a buffer: the mean of the passes added; zero without any.
     void read(Buffer buffer, std::span<float> pixels) const;
     /// The sum of a pixel's radiance over its passes.

@@ -22,6 +22,12 @@ size_t last_that_agrees(Float8 value, Float8 deviation) {
     return largest_level;
 }
 
+/// Returns what lies between two levels.
+float interpolated(Float8 values, float level) {
+    const auto below = static_cast<size_t>(level), above = std::min(below + 1, largest_level);
+    return values[below] + (values[above] - values[below]) * (level - static_cast<float>(below));
+}
+
 }  // namespace
 
 NestedFilm::NestedFilm(uint32_t width, uint32_t height) : grid_{width, height}, tiles_(grid_.count()) {}
@@ -82,8 +88,8 @@ Float8 NestedFilm::variance_around(uint32_t x, uint32_t y) const {
     return variance / count + 0.5f * one * one;
 }
 
-/// Returns the index of every pixel's radius.
-std::vector<float> NestedFilm::chosen_levels() const {
+/// Returns for every pixel the largest level that agrees with all smaller ones.
+std::vector<float> NestedFilm::agreeing_levels() const {
     std::vector<float> chosen(size_t{grid_.width} * grid_.height, static_cast<float>(largest_level));
     for (uint32_t y = 0; y < grid_.height; ++y) {
         for (uint32_t x = 0; x < grid_.width; ++x) {
@@ -97,31 +103,57 @@ std::vector<float> NestedFilm::chosen_levels() const {
     return chosen;
 }
 
+std::vector<float> NestedFilm::chosen_levels() const {
+    const std::vector<float> agreeing = agreeing_levels();
+    std::vector<float> chosen(agreeing.size(), static_cast<float>(largest_level));
+    for (uint32_t y = 0; y < grid_.height; ++y) {
+        for (uint32_t x = 0; x < grid_.width; ++x) {
+            if (!at(x, y)) continue;
+            float sum = 0, count = 0;
+            visit_around(x, y, [&](uint32_t u, uint32_t v) {
+                sum += agreeing[size_t{v} * grid_.width + u];
+                ++count;
+            });
+            chosen[size_t{y} * grid_.width + x] = sum / count;
+        }
+    }
+    return chosen;
+}
+
 void NestedFilm::choose(const std::vector<uint32_t> &passes, std::span<float> pixels, size_t channels) const {
     const std::vector<float> chosen = chosen_levels();
     for (uint32_t y = 0; y < grid_.height; ++y) {
         for (uint32_t x = 0; x < grid_.width; ++x) {
             const Sums *sums = at(x, y);
             if (!sums) continue;
-            float level = 0, count = 0;
-            visit_around(x, y, [&](uint32_t u, uint32_t v) {
-                level += chosen[size_t{v} * grid_.width + u];
-                ++count;
-            });
-            level /= count;
-            const auto below = static_cast<size_t>(level), above = std::min(below + 1, largest_level);
-            const float part = level - static_cast<float>(below);
-            const auto count_of_passes = static_cast<float>(passes[tile_of(x, y)]);
-            const std::span pixel = pixels.subspan((size_t{y} * grid_.width + x) * channels, 3);
+            const size_t index = size_t{y} * grid_.width + x;
+            const std::span pixel = pixels.subspan(index * channels, 3);
+            const auto count = static_cast<float>(passes[tile_of(x, y)]);
             const auto exchange = [&](float &channel, Float8 sum) {
-                const float better = sum[below] + (sum[above] - sum[below]) * part;
-                channel = std::max(channel + (better - sum[provisional_level]) / count_of_passes, 0.0f);
+                const float better = interpolated(sum, chosen[index]) - sum[provisional_level];
+                channel = std::max(channel + better / count, 0.0f);
             };
             exchange(pixel[0], sums->red);
             exchange(pixel[1], sums->green);
             exchange(pixel[2], sums->blue);
         }
     }
+}
+
+NestedFilm::Error NestedFilm::error(uint32_t x, uint32_t y, float level, uint32_t passes) const {
+    const Sums *sums = at(x, y);
+    if (!sums) return {};
+    const float scale = 1 / static_cast<float>(passes);
+    const Float8 variance = sums->variance * (scale * scale), value = sums->brightness() * scale;
+
+    // The smaller of two kernels sees a part of what the larger one sees: of their difference only the rest is noise.
+    constexpr float half_the_radius = 2, of_the_difference = 4.0f / 3;  // as ErrorEstimate has it
+    const float smaller = std::max(level - half_the_radius, 0.0f);
+    const float chosen_variance = interpolated(variance, level);
+    const float difference = interpolated(value, level) - interpolated(value, smaller);
+    const float noise = interpolated(variance, smaller) - chosen_variance;
+    return {chosen_variance, variance[provisional_level],
+            of_the_difference * of_the_difference * (difference * difference - noise)};
 }
 
 size_t NestedFilm::memory_bytes() const {

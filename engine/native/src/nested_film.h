@@ -39,6 +39,18 @@ class NestedFilm {
     /// @param pixels rows from the bottom; the first three of `channels` are changed
     void choose(const std::vector<uint32_t> &passes, std::span<float> pixels, size_t channels) const;
 
+    /// Returns the place of every pixel's radius among the levels, as choose() reads it; that of the largest where no
+    /// caustic is.
+    std::vector<float> chosen_levels() const;
+
+    /// What is known of the error of a pixel's mean brightness.
+    struct Error {
+        float variance = 0, provisional_variance = 0;  ///< by the chosen radius and by the provisional level
+        float blur = 0;                                ///< squared error by the width of the chosen kernel, less noise
+    };
+    /// @param level of chosen_levels()
+    Error error(uint32_t x, uint32_t y, float level, uint32_t passes) const;
+
     size_t memory_bytes() const;
 
   private:
@@ -54,7 +66,7 @@ class NestedFilm {
     template <typename Visit>
     void visit_around(uint32_t x, uint32_t y, const Visit &visit) const;
     Float8 variance_around(uint32_t x, uint32_t y) const;
-    std::vector<float> chosen_levels() const;
+    std::vector<float> agreeing_levels() const;
 
     size_t tile_of(uint32_t x, uint32_t y) const { return grid_.of_pixel(size_t{y} * grid_.width + x); }
 
