@@ -68,16 +68,16 @@ class CandidateTest {
           inverse_radius_(1 / radius),
           is_smooth_(!query.shading && !(query.shading_normal == query.normal)) {}
 
-    /// Tests the photons [i, i + 8).
+    /// Tests the photons [i, i + 8). Returns false if none is within the radius and near the plane.
     /// @param mask which of them to test
-    [[gnu::always_inline]] Candidates operator()(size_t i, Int8 mask) const {
+    [[gnu::always_inline]] bool operator()(size_t i, Int8 mask, Candidates &found) const {
         // Within the radius and near the plane; lengths are in radii.
         const Vec3 p = query_.position, n = query_.normal;
         const Vec3x8 d{(load(&photons_.x[i]) - p.x) * inverse_radius_, (load(&photons_.y[i]) - p.y) * inverse_radius_,
                        (load(&photons_.z[i]) - p.z) * inverse_radius_};
         const Float8 distance_squared = d.x * d.x + d.y * d.y + d.z * d.z, height = dot(d, n);
         mask &= (distance_squared < 1) & (abs(height) < plane_tolerance);
-        if (bytes(mask) == 0) return {mask, distance_squared, height};
+        if (bytes(mask) == 0) return false;
 
         // On the same side of the same surface, and not behind an edge of it.
         mask &= dot(unpack_normals(load(&photons_.normal[i])), n) > normal_tolerance * 127;
@@ -86,7 +86,8 @@ class CandidateTest {
             for (const Barrier &barrier : barriers_) mask &= ~barrier.hides(u, v);
         }
         if (query_.is_bent) mask &= dot(unpack_directions(load(&photons_.direction[i])), n) < 0;
-        return {mask, distance_squared, height};
+        found = {mask, distance_squared, height};
+        return true;
     }
 
     /// Returns whether photons count by the shading normal, as shading_weights has it.

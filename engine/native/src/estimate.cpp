@@ -36,9 +36,9 @@ class Gather {
 
   private:
     [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
-        const Candidates found = test_(i, mask);
+        Candidates found;
+        if (!test_(i, mask, found)) return;
         mask = found.mask;
-        if (bytes(mask) == 0) return;
         Float8 weight = kernel_.weights(found.distance_squared);
         if (test_.is_smooth()) weight *= shading_weights(load(&photons_.direction[i]), query_);
         weight = select(mask, weight);

@@ -30,7 +30,8 @@ class LevelGather {
   private:
     /// Puts eight photons to the tests of the largest radius, then adds those that passed one by one.
     [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
-        const Candidates found = test_(i, mask);
+        Candidates found;
+        if (!test_(i, mask, found)) return;
         uint64_t left = bytes(found.mask);
         if (left == 0) return;
         Float8 factors = broadcast(1);
@@ -66,15 +67,29 @@ class LevelGather {
     Float8 weight_{};
 };
 
+/// Returns the square of a barrier's distance from the centre.
+float distance_squared(const Barrier &b) {
+    const float x = b.bx - b.ax, y = b.by - b.ay;
+    const float s = std::clamp(-(b.ax * x + b.ay * y) / (x * x + y * y), 0.0f, 1.0f);
+    const float px = b.ax + s * x, py = b.ay + s * y;
+    return px * px + py * py;
+}
+
 /// Returns the share of each level's disc that the barriers of the largest one leave.
-Float8 shares_of(const KernelRegion &largest, const Kernel &kernel, Float8 radii) {
-    Float8 shares = broadcast(largest.share());
-    if (largest.barriers().empty()) return shares;
-    std::array<Barrier, KernelRegion::max_barriers> scaled;
+/// @param per_area as LevelGather's
+Float8 shares_of(const KernelRegion &largest, const Kernel &kernel, Float8 per_area) {
     const std::span<const Barrier> barriers = largest.barriers();
+    Float8 shares = broadcast(1);
+    float nearest = 1;
+    for (const Barrier &barrier : barriers) nearest = std::min(nearest, distance_squared(barrier));
+    std::array<Barrier, KernelRegion::max_barriers> scaled;
     for (size_t level = 0; level < level_count; ++level) {
-        if (radii[level] == kernel.radius) continue;
-        const float scale = kernel.radius / radii[level];
+        if (nearest * per_area[level] >= 1) continue;
+        if (per_area[level] == 1) {
+            shares[level] = largest.share();
+            continue;
+        }
+        const float scale = std::sqrt(per_area[level]);
         std::ranges::transform(barriers, scaled.begin(), [&](const Barrier &b) {
             return Barrier{b.ax * scale, b.ay * scale, b.bx * scale, b.by * scale};
         });
@@ -93,10 +108,10 @@ Levels estimate_levels(const PhotonMap &map, const EdgeIndex &edges, const Query
     for (size_t level = 1; level < level_count; ++level) largest.radius = std::max(largest.radius, discs.radius[level]);
     const KernelRegion region = region_of(edges, query, largest);
     const Float8 radii = min(discs.radius, broadcast(largest.radius));
-    const Float8 shares = shares_of(region, largest, radii) * discs.share;
+    const Float8 per_area = largest.radius * largest.radius / (radii * radii);
+    const Float8 shares = shares_of(region, largest, per_area) * discs.share;
 
     // Sums over the photons.
-    const Float8 per_area = largest.radius * largest.radius / (radii * radii);
     Float8 weight;
     Levels sum = vectorized([&] {
         LevelGather gather(map.photons(), query, largest, region.barriers(), per_area);

@@ -51,8 +51,13 @@ using Int8 = int32_t __attribute__((vector_size(32)));  ///< of a comparison: -1
 
 /// Returns a mask as one byte a lane, lane 0 in the lowest: its set lanes can be counted and walked.
 [[gnu::always_inline]] inline uint64_t bytes(Int8 mask) {
-    using Byte8 = int8_t __attribute__((vector_size(8)));
-    return std::bit_cast<uint64_t>(__builtin_convertvector(mask, Byte8));
+    // A byte of each lane at its place in its half, then the halves put together; a conversion to bytes would go by way
+    // of every lane alone.
+    constexpr auto first = static_cast<int32_t>(0xff000000);
+    Int8 placed = mask & Int8{0xff, 0xff00, 0xff0000, first, 0xff, 0xff00, 0xff0000, first};
+    placed |= __builtin_shufflevector(placed, placed, 1, 0, 3, 2, 5, 4, 7, 6);
+    placed |= __builtin_shufflevector(placed, placed, 2, 3, 0, 1, 6, 7, 4, 5);
+    return uint64_t{static_cast<uint32_t>(placed[0])} | uint64_t{static_cast<uint32_t>(placed[4])} << 32;
 }
 
 /// Takes the first set lane out of such bytes, of which one must be set.

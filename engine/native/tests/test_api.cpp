@@ -89,7 +89,7 @@ struct Arrays {
 void choose_parts(pm_settings &settings, uint64_t bits) {
     const auto bit = [bits](unsigned i) { return static_cast<uint32_t>(bits >> i & 1); };
     settings.integrator = bit(0) ? PM_PHOTON_MAP : bit(1) ? PM_PATH_TRACING : PM_REGULAR_SHADING;
-    settings.estimate = bit(2);
+    settings.estimate = bit(7) ? PM_ESTIMATE_ADAPTIVE : bit(2) ? PM_ESTIMATE_NEAREST : PM_ESTIMATE_RADIUS;
     settings.brdf_direction = bit(3);
     settings.use_final_gather = bit(4);
     settings.use_shadow_photons = bit(5);
