@@ -30,15 +30,17 @@ def explain_maps(settings: RenderSettings, statistics: Statistics) -> tuple[str,
 
 def _explain_global(settings: RenderSettings, statistics: Statistics) -> str:
     if statistics.radius_first > 0:
-        return f"Global map: {_radii(statistics.radius_first, statistics.radius_last)}."
+        radii = _radii(statistics.radius_first, statistics.radius_last)
+        return f"Global map: {statistics.photon_count:,} photons a pass, {radii}."
     if not settings.use_indirect:
         return "No global map: Indirect Light is off."
-    return "No global map: there is no light, or nothing that it falls on."
+    return "No global map: no light comes from one surface to another."
 
 
 def _explain_caustic(settings: RenderSettings, statistics: Statistics) -> str:
     if statistics.caustic_radius_first > 0:
-        return f"Caustic map: {_radii(statistics.caustic_radius_first, statistics.caustic_radius_last)}."
+        radii = _radii(statistics.caustic_radius_first, statistics.caustic_radius_last)
+        return f"Caustic map: {statistics.caustic_photon_count:,} photons a pass, {radii}."
     if not settings.use_caustics:
         return "No caustic map: Caustics is off."
     if statistics.caster_count == 0:

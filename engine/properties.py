@@ -267,7 +267,7 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
     """Return what a render is asked to do; with Automatic on, the engine's own choice of photons and kernel."""
     user = scene.photon_maps
     by_hand = (
-        {}
+        {"use_auto": True, "estimate": Estimate.ADAPTIVE}
         if user.use_auto
         else {
             "photon_count": user.photon_count,

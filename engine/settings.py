@@ -100,6 +100,7 @@ class RenderSettings:
     pixel_filter_width: float = 1.5
     film_transparent: bool = False
     threads: int = 0  #: 0: one for every core
+    use_auto: bool = False  #: photon_count and radius, where 0, follow from pilot passes
     keep_photons: bool = False  #: so that they can be read after a pass; costs memory
 
     @property

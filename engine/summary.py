@@ -33,6 +33,7 @@ class Summary:
     radius_last: float
     peak_memory_bytes: int
     error_estimate: float | None  #: relative; None before the second pass
+    plan: dict[str, float]  #: what the passes are made of: photons emitted for each map, first radii, pilot noise
     maps: list[str]
     messages: list[str]
 
@@ -43,6 +44,19 @@ class Summary:
     def metadata(self) -> dict[str, str]:
         """Return the fields as text, for the picture."""
         return {f"photon_maps.{name}": json.dumps(value) for name, value in asdict(self).items()}
+
+
+def plan_of(statistics: Statistics) -> dict[str, float]:
+    """Return what a render chose, or was told; a function of scene and settings, the same wherever it is rendered."""
+    return {
+        "photon_count": statistics.photon_count if statistics.radius_first > 0 else 0,
+        "caustic_photon_count": statistics.caustic_photon_count if statistics.caustic_radius_first > 0 else 0,
+        "radius": statistics.radius_first,
+        "caustic_radius": statistics.caustic_radius_first,
+        "camera_noise": round(statistics.pilot_camera_noise, 6),
+        "global_noise": round(statistics.pilot_global_noise, 6),
+        "caustic_noise": round(statistics.pilot_caustic_noise, 6),
+    }
 
 
 def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_seconds: float) -> Summary:
@@ -64,6 +78,7 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         radius_last=statistics.radius_last,
         peak_memory_bytes=statistics.memory_bytes,
         error_estimate=None if math.isinf(statistics.error) else round(statistics.error, 6),
+        plan=plan_of(statistics),
         maps=maps_built(statistics),
         messages=[str(message) for message in messages],
     )

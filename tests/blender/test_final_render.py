@@ -24,7 +24,7 @@ from tests.blender.scenes import (
 
 FIELDS = [
     *("version", "passes", "seconds", "cpu_seconds", "photons_emitted", "photons_stored", "caustic_photons", "rays"),
-    *("radius_first", "radius_last", "peak_memory_bytes", "error_estimate", "maps", "messages"),
+    *("radius_first", "radius_last", "peak_memory_bytes", "error_estimate", "plan", "maps", "messages"),
 ]
 
 

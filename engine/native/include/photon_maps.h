@@ -126,12 +126,14 @@ typedef struct pm_settings {
     uint32_t keep_photons; /* 1: the last pass's photons can be asked for, and light straight from lights is stored */
     float stop_error;      /* >= 0; above: parts of the picture that are far below this relative error get no further
                                 samples, which needs PM_PASS_ERROR */
+    uint32_t use_auto; /* 1: with photon_count and radius 0, both follow from pilot passes: from what noise, blur and
+                          cost those have in each map, and from the error that the picture is made for */
 } pm_settings;
 
 typedef struct pm_statistics {
     uint32_t struct_size;
     uint32_t passes;       /* finished */
-    uint64_t photon_count; /* emitted per pass, as chosen */
+    uint64_t photon_count; /* emitted per pass for the global map, as chosen */
     uint64_t photons_emitted;
     uint64_t photons_stored;
     uint64_t rays;
@@ -156,7 +158,12 @@ typedef struct pm_statistics {
                     before the second pass */
     float noise; /* part of it that varies from pass to pass */
     float blur;  /* part of it by the width of the kernels */
-    float done;  /* share of the picture that gets no further samples */
+    uint64_t caustic_photon_count; /* emitted per pass for the caustic map, as chosen */
+    float
+        pilot_camera_noise; /* relative standard deviation of a pass, as pilot passes saw it: of what photons do not */
+    float pilot_global_noise;  /* carry, and of what those of either map do with so many as a pass emits; 0 without */
+    float pilot_caustic_noise; /* use_auto */
+    float done;                /* share of the picture that gets no further samples */
 } pm_statistics;
 
 typedef struct pm_photon {

@@ -252,6 +252,10 @@ class Statistics:
     error: float  #: relative, estimated from the passes; infinite without Pass.ERROR and before the second pass
     noise: float  #: the part of it that varies from pass to pass
     blur: float  #: the part of it by the width of the kernels
+    caustic_photon_count: int  #: emitted per pass for the caustic map
+    pilot_camera_noise: float  #: relative, of a pass, by what photons do not carry; 0 without a plan
+    pilot_global_noise: float
+    pilot_caustic_noise: float
     done: float  #: share of the picture that gets no further samples
 
 

@@ -185,6 +185,7 @@ class PmSettings(SizedStructure):
         ("use_photon_guiding", c_uint32),
         ("keep_photons", c_uint32),
         ("stop_error", c_float),
+        ("use_auto", c_uint32),
     ]
 
 
@@ -218,6 +219,10 @@ class PmStatistics(SizedStructure):
         ("error", c_float),
         ("noise", c_float),
         ("blur", c_float),
+        ("caustic_photon_count", c_uint64),
+        ("pilot_camera_noise", c_float),
+        ("pilot_global_noise", c_float),
+        ("pilot_caustic_noise", c_float),
         ("done", c_float),
     ]
 

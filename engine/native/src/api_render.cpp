@@ -59,7 +59,9 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         const pm::RenderStatistics &s = render->render.statistics();
         const uint32_t passes = render->render.film().passes();
         statistics->passes = passes;
-        statistics->photon_count = render->render.photon_count();
+        const pm::PhotonCounts counts = render->render.photon_counts();
+        statistics->photon_count = counts.global;
+        statistics->caustic_photon_count = counts.caustic;
         statistics->photons_emitted = s.photons_emitted;
         statistics->photons_stored = s.photons_stored;
         statistics->rays = s.rays.rays;
@@ -88,6 +90,10 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->noise = error ? error->noise() : pm::infinity;
         statistics->blur = error ? error->blur() : pm::infinity;
         statistics->done = render->render.done();
+        const pm::PilotNoise &pilot = render->render.pilot_noise();
+        statistics->pilot_camera_noise = static_cast<float>(std::sqrt(pilot.camera_variance));
+        statistics->pilot_global_noise = static_cast<float>(pilot.global.deviation(counts.global));
+        statistics->pilot_caustic_noise = static_cast<float>(pilot.caustic.deviation(counts.caustic));
     });
 }
 

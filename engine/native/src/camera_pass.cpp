@@ -8,8 +8,6 @@
 
 namespace photon_maps {
 
-namespace {
-
 PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, bool is_probe, RayCounts &counts,
                          Levels *levels) {
     Sequence sequence(pass.index, hash(hash(pass.seed, x), y));
@@ -18,8 +16,6 @@ PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, bool is
     const Vec2 pixel{static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y};
     return trace_camera_path(pass, pass.camera.ray(pixel, {u[2], u[3]}), is_probe, sequence, counts, levels);
 }
-
-}  // namespace
 
 RayCounts render_camera_pass(const CameraPass &pass, Film &film, ErrorEstimate *error,
                              const std::vector<bool> &left_out, const std::atomic<bool> *cancel) {
@@ -37,7 +33,7 @@ RayCounts render_camera_pass(const CameraPass &pass, Film &film, ErrorEstimate *
                                                     levels ? &*levels : nullptr);
             film.set(pixel, sample);
             if (levels) nested->set(x, y, *levels);
-            if (is_probe) error->set_blur(x, y, sample.blur);
+            if (is_probe) error->set_blur(x, y, sample.global.blur + sample.caustic_map.blur);
         });
     });
     return std::accumulate(counts.begin(), counts.end(), RayCounts{},

@@ -53,6 +53,11 @@ struct RayCounts {
     }
 };
 
+/// Renders one sample of a pixel of the frame.
+/// @param is_probe, levels as of trace_camera_path()
+PixelSample render_pixel(const CameraPass &pass, uint32_t x, uint32_t y, bool is_probe, RayCounts &counts,
+                         Levels *levels);
+
 /// Renders one sample a pixel into `film`.
 /// @param error null, or told the blur of its probes
 /// @param left_out tiles that are not rendered

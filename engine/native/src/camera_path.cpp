@@ -121,8 +121,10 @@ void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, c
     const Gathered gathered = gather_radiance(map, hit, shading);
     word_.then(diffuse_lobes).then(last).buffer(sample_) += throughput_ * gathered.radiance;
     sample_.photon_density += average(throughput_) * gathered.density;
-    if (is_probe_)
-        sample_.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading).radiance);
+    if (!is_probe_) return;
+    MapSample &sample = &map == &pass_.maps->caustic ? sample_.caustic_map : sample_.global;
+    sample.radiance += throughput_ * gathered.radiance;
+    sample.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading).radiance);
 }
 
 /// What the caustic map brings to what the eye sees, by all radii.
@@ -130,6 +132,7 @@ void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shad
     const Levels gathered = throughput_ * gather_levels(pass_.maps->caustic, hit, shading);
     *levels_ += gathered;
     sample_.caustic += gathered.color(provisional_level);
+    if (is_probe_) sample_.caustic_map.radiance += gathered.color(provisional_level);
     sample_.photon_density += average(throughput_) * gathered.density;
 }
 

@@ -31,7 +31,7 @@
 namespace photon_maps {
 
 /// Follows a ray of the camera.
-/// @param is_probe whether PixelSample::blur is asked for
+/// @param is_probe whether PixelSample::global and caustic_map are asked for
 /// @param counts is raised by the rays that were traced
 /// @param levels may be null; else the caustic map is asked by nested radii, and what they bring is added here. The
 /// sample has it by one of them

@@ -126,6 +126,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.film_transparent = source.film_transparent != 0;
     settings.keep_photons = source.keep_photons != 0;
     settings.stop_error = source.stop_error;
+    settings.use_auto = source.use_auto != 0;
     settings.threads = thread_count(source.threads);
     settings.buffers = source.passes;
     return settings;

@@ -1,31 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "error_estimate.h"
 
-#include <numeric>
-
 namespace photon_maps {
 
 namespace {
 
 constexpr double probe_count = 4096;
-/// Of pixels left out of means: single ones that hit something bright would hide all others.
-constexpr size_t left_out_pixels = 1000;
-
-/// Mean of all but the largest thousandth; reorders the values.
-float trimmed_mean(std::vector<float> &values, size_t share = left_out_pixels) {
-    if (values.empty()) return 0;
-    const auto end = values.end() - static_cast<std::ptrdiff_t>(values.size() / share);
-    if (end != values.end()) std::nth_element(values.begin(), end, values.end());
-    return static_cast<float>(std::accumulate(values.begin(), end, 0.0) / static_cast<double>(end - values.begin()));
-}
-
-/// Variance of the mean of n values, if they are independent.
-Vec3 variance_of_mean(Vec3 sum, Vec3 squares, uint32_t n) {
-    const auto count = static_cast<float>(n);
-    const Vec3 mean = sum / count;
-    return max(squares / count - mean * mean, {}) / (count - 1);
-}
-
 /// By how much the mean of n passes varies more than it would if its variance went on as at n = doubling <= n, a power
 /// of two, by half for each doubling: it is the mean of stretches of the low-discrepancy sequence whose lengths are
 /// powers of two, the longer the more evenly spread.
@@ -86,23 +66,10 @@ void ErrorEstimate::add(const Film &film, const Film &pass, const std::vector<bo
 }
 
 void ErrorEstimate::find_floor(const Film &film) {
-    // The brightest are lamps and skies: how bright has nothing to do with what else is to be seen.
-    constexpr size_t left_out = 100;
-    std::vector<float> radiances;
-    radiances.reserve(squares_.size());
-    for (size_t tile = 0; tile < tiles_.count(); ++tile)
-        tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
-            radiances.push_back(average(film.sum(pixel)) / static_cast<float>(film.passes_of(tile)));
-        });
-    const float floor = trimmed_mean(radiances, left_out);
-    floor_ = std::max(floor * floor, std::numeric_limits<float>::min());
-}
-
-/// Squares over the squared radiance that they are errors of.
-float ErrorEstimate::relative(Vec3 square, Vec3 mean) const {
-    return (square.x / (mean.x * mean.x + floor_) + square.y / (mean.y * mean.y + floor_) +
-            square.z / (mean.z * mean.z + floor_)) /
-           3;
+    std::vector<Vec3> means(squares_.size());
+    for (size_t pixel = 0; pixel < means.size(); ++pixel)
+        means[pixel] = film.sum(pixel) / static_cast<float>(film.passes_of(tiles_.of_pixel(pixel)));
+    floor_ = squared_floor(means);
 }
 
 void ErrorEstimate::estimate_noise(const Film &film) {
@@ -145,8 +112,7 @@ void ErrorEstimate::compare_halves(const Film &film) {
     measured_at_ = passes_;
 }
 
-/// If the error of a kernel grows with the square of its radius, as it does where the light is smooth, it is four
-/// thirds of what a kernel of half the radius takes away. The noise of that difference is subtracted.
+/// From what kernels of half the radius take away, less the noise of that difference.
 void ErrorEstimate::estimate_blur(const Film &film) {
     std::vector<float> squares;
     for (uint32_t y = stride_ / 2; y < tiles_.height; y += stride_)
@@ -159,8 +125,7 @@ void ErrorEstimate::estimate_blur(const Film &film) {
             const Vec3 noise = variance_of_mean(moments.sum, moments.squares, n);
             squares.push_back(relative(mean * mean - noise, film.sum(pixel) / passes));
         }
-    constexpr float of_the_difference = 4.0f / 3;
-    blur_ = of_the_difference * std::sqrt(std::max(0.0f, trimmed_mean(squares)));
+    blur_ = blur_of_difference * std::sqrt(std::max(0.0f, trimmed_mean(squares)));
 }
 
 /// Where caustics are read by another radius than the passes' own, that one's variance takes the place of theirs, and

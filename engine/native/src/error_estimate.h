@@ -4,6 +4,7 @@
 #pragma once
 
 #include "film.h"
+#include "relative_error.h"
 
 namespace photon_maps {
 
@@ -44,7 +45,7 @@ class ErrorEstimate {
 
     size_t probe(uint32_t x, uint32_t y) const { return size_t{y / stride_} * probe_columns_ + x / stride_; }
     void find_floor(const Film &film);
-    float relative(Vec3 square, Vec3 mean) const;
+    float relative(Vec3 square, Vec3 mean) const { return relative_square(square, mean, floor_); }
     void estimate_noise(const Film &film);
     void compare_halves(const Film &film);
     void estimate_blur(const Film &film);

@@ -38,14 +38,20 @@ constexpr std::array<size_t, buffer_count> buffer_channels = {4, 1, 3, 3, 3, 3, 
 /// Depth where nothing is hit, as Blender has it.
 constexpr float no_depth = 1e10f;
 
+/// What the photons of one map bring to a pixel.
+struct MapSample {
+    Vec3 radiance;
+    Vec3 blur;  ///< by how much that is more than with kernels of half the radius
+};
+
 /// What one camera path brings to its pixel.
 struct PixelSample {
     Vec3 emission, background, direct, specular, soft_indirect, caustic;  ///< radiance
     float alpha = 1;
     float depth = no_depth;
     Vec3 normal, position, albedo;
-    float photon_density = 0;  ///< 1/m2
-    Vec3 blur;  ///< by how much the photons' part of the radiance is more than with kernels of half the radius
+    float photon_density = 0;       ///< 1/m2
+    MapSample global, caustic_map;  ///< part of the radiance above; told by probes only
 
     Vec3 indirect() const { return specular + soft_indirect; }
     Vec3 radiance() const { return emission + background + direct + indirect() + caustic; }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relative_error.h"
+
 namespace photon_maps {
 
 namespace {
@@ -147,13 +149,13 @@ NestedFilm::Error NestedFilm::error(uint32_t x, uint32_t y, float level, uint32_
     const Float8 variance = sums->variance * (scale * scale), value = sums->brightness() * scale;
 
     // The smaller of two kernels sees a part of what the larger one sees: of their difference only the rest is noise.
-    constexpr float half_the_radius = 2, of_the_difference = 4.0f / 3;  // as ErrorEstimate has it
+    constexpr float half_the_radius = 2;
     const float smaller = std::max(level - half_the_radius, 0.0f);
     const float chosen_variance = interpolated(variance, level);
     const float difference = interpolated(value, level) - interpolated(value, smaller);
     const float noise = interpolated(variance, smaller) - chosen_variance;
     return {chosen_variance, variance[provisional_level],
-            of_the_difference * of_the_difference * (difference * difference - noise)};
+            blur_of_difference * blur_of_difference * (difference * difference - noise)};
 }
 
 size_t NestedFilm::memory_bytes() const {

@@ -31,6 +31,7 @@ struct TracedPhotons {
     std::vector<ShadowPhoton> shadow_photons;
     FluxBalance balance;  ///< of the photons that are not aimed
     uint64_t rays = 0;
+    uint64_t caustic_rays = 0;  ///< of those, of the photons that are aimed
 
     const std::vector<Photon> &operator[](pm_photon_kind kind) const { return photons[kind]; }
     size_t size() const { return photons[0].size() + photons[1].size() + photons[2].size(); }

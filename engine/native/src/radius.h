@@ -10,14 +10,17 @@
 
 namespace photon_maps {
 
+/// Photons of one pass that choose_indirect_radius() finds room for.
+constexpr double usual_photons_in_kernel = 125;
+
 /// Radius of pass `index` (counted from 0) after Knaus and Zwicker 2011, equation 21: r^2 shrinks by (i + 2/3) / (i +
 /// 1) from the i-th pass to the next, so that noise and bias both vanish.
 float shrunk_radius(float first_radius, uint32_t index);
 
-/// Chooses the first radius of the global map so that the kernel of a typical pixel holds `photons_in_kernel` photons
-/// of one pass: by the density of pilot photons, which no picture sums - a radius from the photons themselves would
-/// brighten it.
-/// @return above 0 in a scene that has surfaces, even if no pilot photon fell anywhere
+/// Chooses the first radius of the global map so that the kernel of a typical pixel holds `usual_photons_in_kernel`
+/// photons of one pass: by the density of pilot photons, which no picture sums - a radius from the photons themselves
+/// would brighten it.
+/// @return 0 if no pilot photon met a second surface
 float choose_indirect_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                              const PhotonTracing &pass, const std::atomic<bool> *cancel);
 

@@ -30,9 +30,11 @@ class Stopwatch {
 };
 
 /// As many photons as pixels: error per time is flat between half and twice that.
-uint64_t photon_count_for(const RenderSettings &settings, const Camera &camera) {
-    if (settings.photon_count != 0) return settings.photon_count;
-    return std::clamp(uint64_t{camera.frame_width} * camera.frame_height, min_photon_count, max_photon_count);
+PhotonCounts photon_counts_for(const RenderSettings &settings, const Camera &camera) {
+    const uint64_t pixels = uint64_t{camera.frame_width} * camera.frame_height;
+    const uint64_t count =
+        settings.photon_count != 0 ? settings.photon_count : std::clamp(pixels, min_photon_count, max_photon_count);
+    return {count, count};
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       camera_(camera),
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
-      photon_count_(photon_count_for(settings, camera)),
+      counts_(photon_counts_for(settings, camera)),
       film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
     if (film_.has(Buffer::error)) error_.emplace(camera.width, camera.height);
@@ -78,9 +80,10 @@ bool Render::marks_shadows() const {
 PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
     const uint32_t stream = purpose == PhotonPurpose::caustic ? caustic_stream : photon_stream;
     const bool is_global = purpose == PhotonPurpose::global;
+    const uint64_t count = is_global ? counts_.global : counts_.caustic;
     return {purpose,
-            photon_count_ * index,
-            photon_count_,
+            count * index,
+            count,
             settings_.max_bounces,
             hash(settings_.seed, stream),
             settings_.threads,
@@ -156,7 +159,7 @@ PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
 
 TracedPhotons Render::trace(uint32_t index) {
     TracedPhotons photons;
-    if (traces(PhotonPurpose::global)) {
+    if (first_radii_->indirect > 0) {
         PhotonTracing global = tracing(PhotonPurpose::global, index);
         if (settings_.use_final_gather) --global.max_bounces;  // the gathering ray is a bounce more
         photons = trace_photons(scene_, emission_, global, &cancel_);
@@ -165,6 +168,7 @@ TracedPhotons Render::trace(uint32_t index) {
         TracedPhotons aimed = trace_photons(scene_, emission_, tracing(PhotonPurpose::caustic, index), &cancel_);
         photons.photons[PM_PHOTONS_CAUSTIC] = std::move(aimed.photons[PM_PHOTONS_CAUSTIC]);
         photons.rays += aimed.rays;
+        photons.caustic_rays = aimed.rays;
     }
     return photons;
 }
@@ -211,11 +215,87 @@ PhotonImportance Render::importance_of(const TracedPhotons &photons) const {
     return importance;
 }
 
-PhotonGather Render::gather(const PhotonMap &map, float radius) const {
-    Kernel kernel = settings_.kernel;
-    kernel.radius = radius;
-    return {
-        &map, &edges_, coverage_ ? &*coverage_ : nullptr, kernel, settings_.nearest_count, settings_.mean_direction};
+PhotonMaps Render::gathers_of(const Maps &maps, const Radii &radii) const {
+    const auto gather = [&](const PhotonMap &map, float radius) -> PhotonGather {
+        Kernel kernel = settings_.kernel;
+        kernel.radius = radius;
+        const Coverage *coverage = coverage_ ? &*coverage_ : nullptr;
+        return {&map, &edges_, coverage, kernel, settings_.nearest_count, settings_.mean_direction};
+    };
+    return {gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
+}
+
+CameraPass Render::camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const {
+    return {scene_,
+            lights_,
+            camera_,
+            pixel_sampler_,
+            settings_.integrator,
+            settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
+            maps.importance ? &*maps.importance : nullptr,
+            maps.shadow_photons ? &*maps.shadow_photons : nullptr,
+            settings_.use_final_gather && settings_.use_indirect,
+            settings_.max_bounces,
+            hash(settings_.seed, camera_stream),
+            index,
+            settings_.film_transparent,
+            settings_.threads};
+}
+
+/// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
+/// is summed would not be blind to it.
+void Render::make_plan() {
+    constexpr uint32_t pilot_passes = PilotPixels::passes;
+    constexpr uint64_t most_pilot_photons = 1 << 13;
+    const bool is_planned = settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
+                            settings_.integrator == Integrator::photon_map;
+    if (!is_planned || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
+
+    // See what a few passes bring to some pixels.
+    const PhotonCounts whole = counts_;
+    counts_ = {std::min(counts_.global, most_pilot_photons), std::min(counts_.caustic, most_pilot_photons)};
+    PilotPixels pixels(camera_);
+    uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
+    for (uint32_t pilot = 0; pilot < pilot_passes; ++pilot) {
+        const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
+        TracedPhotons photons = trace(index);
+        rays += photons.rays - photons.caustic_rays;
+        caustic_rays += photons.caustic_rays;
+        caustic_stored += photons[PM_PHOTONS_CAUSTIC].size();
+        stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
+        const Maps maps = build_maps(photons, *first_radii_);
+        const PhotonMaps gathers = gathers_of(maps, *first_radii_);
+        pixels.add(camera_pass(maps, gathers, index), &cancel_);
+    }
+
+    // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
+    constexpr double query_cost = 2.5, photon_cost = 0.005, storing_cost = 0.1;
+    const auto cost = [&](uint64_t traced, uint64_t kept, uint64_t count) {
+        const auto emitted = static_cast<double>(count * pilot_passes);
+        return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
+    };
+    const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
+    const double maps = (first_radii_->indirect > 0 ? 1 : 0) + (first_radii_->caustic > 0 ? 1 : 0);
+    PilotNoise &noise = pilot_noise_;
+    pixels.find_noise(noise);
+    if (first_radii_->indirect > 0) {
+        noise.global.count = static_cast<double>(counts_.global);
+        noise.global.cost = cost(rays, stored, counts_.global);
+    }
+    if (first_radii_->caustic > 0) {
+        noise.caustic.count = static_cast<double>(counts_.caustic);
+        if (is_nested()) noise.caustic.variance *= 2;  // the chosen radius has about as much blur as noise
+        noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
+    }
+    noise.pixel_cost = frame * (pixels.rays_per_pixel() + query_cost * maps);
+    noise.gather_cost = frame * photon_cost * usual_photons_in_kernel * static_cast<double>(counts_.global) /
+                        static_cast<double>(whole.global);
+
+    // Without an error to stop at, the one that most pictures are made for.
+    constexpr double usual_error = 0.02;
+    const Plan plan = plan_for(noise, settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error);
+    counts_ = plan.counts;
+    first_radii_->indirect *= plan.global_radius;
 }
 
 void Render::render_into(Film &pass_film, uint32_t index) {
@@ -226,6 +306,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     if (!first_radii_) {
         const Stopwatch watch(spent.seconds_trace);
         choose_radii();
+        make_plan();
     }
     const Radii radii = radii_of_pass(index);
 
@@ -246,21 +327,8 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     // Pass 2: camera rays.
     {
         const Stopwatch watch(spent.seconds_gather);
-        const PhotonMaps gathers{gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
-        const CameraPass pass{scene_,
-                              lights_,
-                              camera_,
-                              pixel_sampler_,
-                              settings_.integrator,
-                              settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
-                              maps.importance ? &*maps.importance : nullptr,
-                              maps.shadow_photons ? &*maps.shadow_photons : nullptr,
-                              settings_.use_final_gather && settings_.use_indirect,
-                              settings_.max_bounces,
-                              hash(settings_.seed, camera_stream),
-                              index,
-                              settings_.film_transparent,
-                              settings_.threads};
+        const PhotonMaps gathers = gathers_of(maps, radii);
+        const CameraPass pass = camera_pass(maps, gathers, index);
         spent.rays = render_camera_pass(pass, pass_film, error_ ? &*error_ : nullptr, left_out_, &cancel_);
     }
 
@@ -270,7 +338,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
                           (error_ ? error_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
-    total.photons_emitted += photon_count_ * (uint64_t{traces(PhotonPurpose::global)} + uint64_t{radii.caustic > 0});
+    total.photons_emitted += (radii.indirect > 0 ? counts_.global : 0) + (radii.caustic > 0 ? counts_.caustic : 0);
     total.photons_stored += spent.photons_stored;
     total.caustic_photons += spent.caustic_photons;
     total.rays += spent.rays;

@@ -10,6 +10,7 @@
 #include "camera_pass.h"
 #include "film.h"
 #include "photon_trace.h"
+#include "plan.h"
 
 namespace photon_maps {
 
@@ -30,6 +31,7 @@ struct RenderSettings {
     int threads;
     uint32_t buffers;  ///< bit 1 << Buffer
     bool keep_photons;
+    bool use_auto;     ///< counts and radii that are 0 follow from pilot passes
     float stop_error;  ///< tiles far below it are left out of further passes; 0: none is
 };
 
@@ -65,7 +67,9 @@ class Render {
     }
     const RenderStatistics &statistics() const { return statistics_; }
     bool keeps_photons() const { return settings_.keep_photons; }
-    uint64_t photon_count() const { return photon_count_; }
+    PhotonCounts photon_counts() const { return counts_; }
+    /// What the plan was made from, and how wide its kernels are; nothing before the first pass or without a plan.
+    const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
     /// Photons of the last finished pass, if they are kept.
     const std::vector<Photon> &photons(pm_photon_kind kind) const { return photons_[kind]; }
@@ -93,11 +97,13 @@ class Render {
     bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     void choose_radii();
+    void make_plan();
+    CameraPass camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
     Maps build_maps(TracedPhotons &photons, const Radii &radii) const;
     PhotonImportance importance_of(const TracedPhotons &photons) const;
-    PhotonGather gather(const PhotonMap &map, float radius) const;
+    PhotonMaps gathers_of(const Maps &maps, const Radii &radii) const;
     void render_into(Film &pass_film, uint32_t index);
     void leave_out_what_is_done();
 
@@ -107,7 +113,8 @@ class Render {
     Camera camera_;
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
-    uint64_t photon_count_;
+    PhotonCounts counts_;
+    PilotNoise pilot_noise_;
     std::optional<Radii> first_radii_;  ///< of pass 0, once chosen
     EdgeIndex edges_;
     std::optional<Coverage> coverage_;  ///< made along with the first radii, if there is a map

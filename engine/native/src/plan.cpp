@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plan.h"
+
+#include "camera_path.h"
+#include "parallel.h"
+#include "relative_error.h"
+
+namespace photon_maps {
+
+namespace {
+
+constexpr uint32_t pilot_pixels = 1024;
+
+/// Means over the first passes of the squared radius, and of its inverse, over that of the first: by the gamma function
+/// r^2 goes as (pass + 1)^(-1/3) / gamma(5/3) (Knaus and Zwicker 2011, equation 21 with alpha = 2/3).
+double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.66 / passes; }
+double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
+
+/// Passes until the error is small enough.
+double passes_needed(double camera, double photons, double blur, double error) {
+    constexpr double fewest = 4, most = 1 << 16;
+    const auto squared_error = [&](double passes) {
+        const double shrunk = mean_squared_radius(passes);
+        return (camera + photons * mean_inverse_squared_radius(passes)) / passes + blur * shrunk * shrunk;
+    };
+    double low = fewest, high = most;
+    if (squared_error(low) <= error * error) return low;
+    constexpr int halvings = 24;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = std::sqrt(low * high);
+        (squared_error(middle) > error * error ? low : high) = middle;
+    }
+    return high;
+}
+
+/// Steps of a factor: 2^(-range / steps) ... 2^(range / steps).
+std::vector<double> powers(int range, double steps, int last) {
+    std::vector<double> factors;
+    for (int i = -range; i <= last; ++i) factors.push_back(std::exp2(i / steps));
+    return factors;
+}
+
+}  // namespace
+
+Plan plan_for(const PilotNoise &noise, double error) {
+    const auto counts_of = [](const MapNoise &map) {
+        constexpr double fewest_photons = 1 << 12, most_photons = 1 << 23;
+        std::vector<double> counts;
+        if (map.count == 0) return std::vector<double>{0};
+        for (const double factor : powers(8, 2, 12))
+            counts.push_back(std::clamp(map.count * factor, fewest_photons, most_photons));
+        return counts;
+    };
+    const std::vector<double> radii = noise.global.count > 0 ? powers(6, 4, 0) : std::vector<double>{1};
+    Plan best;
+    double best_cost = std::numeric_limits<double>::infinity();
+    for (const double global : counts_of(noise.global))
+        for (const double caustic : counts_of(noise.caustic))
+            for (const double radius : radii) {
+                const double area = radius * radius;
+                double photons = 0, blur = noise.caustic.blur, cost = noise.pixel_cost;
+                if (global > 0) {
+                    photons += noise.global.variance * noise.global.count / global / area;
+                    blur += noise.global.blur * area * area;
+                    cost += global * noise.global.cost + noise.gather_cost * global / noise.global.count * area;
+                }
+                if (caustic > 0) {
+                    photons += noise.caustic.variance * noise.caustic.count / caustic;
+                    cost += caustic * noise.caustic.cost;
+                }
+                cost *= passes_needed(noise.camera_variance, photons, blur, error);
+                if (cost >= best_cost) continue;
+                best_cost = cost;
+                best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)}, static_cast<float>(radius)};
+            }
+    return best;
+}
+
+PilotPixels::PilotPixels(const Camera &camera) {
+    const uint64_t all = uint64_t{camera.frame_width} * camera.frame_height;
+    const auto count = static_cast<uint32_t>(std::min<uint64_t>(pilot_pixels, all));
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto u = sobol4(i, 0);
+        pixels_.push_back({static_cast<uint32_t>(u[0] * static_cast<float>(camera.frame_width)),
+                           static_cast<uint32_t>(u[1] * static_cast<float>(camera.frame_height)),
+                           {},
+                           {},
+                           {},
+                           {},
+                           {}});
+    }
+}
+
+void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
+    const bool is_first_half = added_ < passes / 2;
+    std::vector<RayCounts> counts(pixels_.size());
+    parallel_for(pass.threads, pixels_.size(), cancel, [&](size_t i) {
+        Pixel &pixel = pixels_[i];
+        const PixelSample sample = render_pixel(pass, pixel.x, pixel.y, true, counts[i], nullptr);
+        pixel.global.add(sample.global.radiance, is_first_half);
+        pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
+        pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
+        pixel.global_blur.add(sample.global.blur, is_first_half);
+        pixel.caustic_blur.add(sample.caustic_map.blur, is_first_half);
+    });
+    for (const RayCounts &count : counts) rays_ += count.rays;
+    ++added_;
+}
+
+void PilotPixels::find_noise(PilotNoise &noise) const {
+    std::vector<Vec3> means;
+    constexpr auto count = static_cast<float>(passes);
+    for (const Pixel &p : pixels_) means.push_back((p.camera.sum + p.global.sum + p.caustic.sum) / count);
+    const float floor = squared_floor(means);
+    const auto mean_over_pixels = [&](auto square) {
+        std::vector<float> squares;
+        for (size_t i = 0; i < pixels_.size(); ++i)
+            squares.push_back(relative_square(square(pixels_[i]), means[i], floor));
+        return double{trimmed_mean(squares)};
+    };
+    const auto variance = [&](Moments Pixel::*part) {
+        return mean_over_pixels([&](const Pixel &p) { return (p.*part).difference * (p.*part).difference / count; });
+    };
+    // As far as the noise of the difference tells: blur that cannot be ruled out counts.
+    const auto blur = [&](Moments Pixel::*part) {
+        const double difference = mean_over_pixels([&](const Pixel &p) {
+            const Vec3 mean = (p.*part).sum / count;
+            return mean * mean - variance_of_mean((p.*part).sum, (p.*part).squares, passes);
+        });
+        const double doubt = variance(part) / count * std::sqrt(2.0 / static_cast<double>(pixels_.size()));
+        return blur_of_difference * blur_of_difference * (std::max(difference, 0.0) + doubt);
+    };
+    noise.camera_variance = variance(&Pixel::camera);
+    noise.global.variance = variance(&Pixel::global);
+    noise.caustic.variance = variance(&Pixel::caustic);
+    noise.global.blur = blur(&Pixel::global_blur);
+    noise.caustic.blur = blur(&Pixel::caustic_blur);
+}
+
+}  // namespace photon_maps

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many photons a pass emits for each map, and how wide the global map's kernels are: by what pilot passes tell of
+// noise, blur and cost, so that the picture comes to its error in the least time. A function of scene, camera and
+// settings alone: costs are counted in rays, not measured by a clock.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "camera_pass.h"
+
+namespace photon_maps {
+
+/// Photons that a pass emits for each map.
+struct PhotonCounts {
+    uint64_t global = 0, caustic = 0;
+};
+
+/// What one sort of photons does to the pictures of passes that emit `count`.
+struct MapNoise {
+    double variance = 0;  ///< relative to squared radiance as ErrorEstimate has it
+    double blur = 0;      ///< relative square of the error by the kernel's width
+    double count = 0;     ///< emitted in a pass
+    double cost = 0;      ///< of tracing and storing one of them, in rays
+
+    /// Relative standard deviation of a pass that emits so many, by kernels of the same width.
+    double deviation(uint64_t emitted) const {
+        return emitted > 0 ? std::sqrt(variance * count / static_cast<double>(emitted)) : 0;
+    }
+};
+
+/// What pilot passes found.
+struct PilotNoise {
+    double camera_variance = 0;  ///< of all that photons do not carry
+    MapNoise global, caustic;
+    double pixel_cost = 0;   ///< of the camera's path and its estimates, in rays, times the pixels
+    double gather_cost = 0;  ///< of the photons in the kernels of a whole pass, in rays
+};
+
+struct Plan {
+    PhotonCounts counts;
+    float global_radius = 1;  ///< over that of the pilot passes
+};
+
+/// Chooses what comes to an error in the least time. The variance of a map falls with its photons and with the square
+/// of the radius, its blur grows with the fourth power of the radius, and passes shrink radii (shrunk_radius).
+/// @param error > 0, relative
+Plan plan_for(const PilotNoise &noise, double error);
+
+/// Some pixels of the frame, followed over the pilot passes.
+class PilotPixels {
+  public:
+    static constexpr uint32_t passes = 4;
+
+    explicit PilotPixels(const Camera &camera);
+
+    /// Renders the pixels in one pass: of `passes` with consecutive indices, so that they stratify each other as those
+    /// of a picture do.
+    /// @throws Cancelled once `cancel` is set
+    void add(const CameraPass &pass, const std::atomic<bool> *cancel);
+
+    /// Rays of a pixel in a pass, on average.
+    double rays_per_pixel() const { return static_cast<double>(rays_) / static_cast<double>(pixels_.size() * passes); }
+    /// Sets the variances and the blur that the passes tell, once all are added.
+    void find_noise(PilotNoise &noise) const;
+
+  private:
+    /// Sum over the passes of a part of a pixel's radiance, of its squares, and of the first half less the second.
+    struct Moments {
+        Vec3 sum, squares, difference;
+
+        void add(Vec3 value, bool is_of_first_half) {
+            sum += value;
+            squares += value * value;
+            difference += is_of_first_half ? value : -value;
+        }
+    };
+    struct Pixel {
+        uint32_t x, y;  ///< in the frame
+        Moments camera, global, caustic, global_blur, caustic_blur;
+    };
+
+    std::vector<Pixel> pixels_;
+    uint32_t added_ = 0;
+    uint64_t rays_ = 0;
+};
+
+}  // namespace photon_maps
