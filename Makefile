@@ -29,15 +29,17 @@ export PYTHONDONTWRITEBYTECODE := 1
 unexport PYTHONPATH PYTHONHOME
 
 # What is asked of `make demo` and `make beside`; by way of the environment, so that any file name will do.
-export BLEND OUT FRAME SIZE CPU_SECONDS
+export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed parts package test test-native test-python test-campaign lint format bench clean
+.PHONY: help demo beside chart-scene prediction seed parts package test test-native test-python test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make beside    beside Cycles in the same CPU time: [BLEND=file.blend] [OUT=picture.png] [CPU_SECONDS=120]'
+	@echo 'make chart-scene   error against time for a scene of yours: [BLEND=file.blend] [OUT=picture.png] [SECONDS=60]'
+	@echo 'make prediction    the time that such a chart foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
@@ -103,6 +105,12 @@ demo: $(ZIP) .venv/system.stamp
 
 beside: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/beside_cycles.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$CPU_SECONDS"
+
+chart-scene: $(ZIP) .venv/system.stamp
+	@$(PYTHON) tools/chart_scene.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$SECONDS"
+
+prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
+	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)
 
 # The scene, figures and tables of docs/seed.md; the path-traced reference is kept there from run to run.
 seed: build/native/stamp .venv/seed.stamp .venv/system.stamp

@@ -2,10 +2,11 @@
 """Photon Maps: a render engine for Blender that follows light as photons."""
 
 from .engine import properties, render_engine
-from .ui import compatibility, panels
+from .operators import chart
+from .ui import chart_panel, compatibility, panels
 
 #: In the order of registration; each has register() and unregister().
-MODULES = (properties, render_engine, panels, compatibility)
+MODULES = (properties, render_engine, chart, panels, chart_panel, compatibility)
 
 
 def register() -> None:

@@ -35,6 +35,11 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     except ImportError as error:
         _fail(engine, f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
         return
+    from . import capture
+
+    if capture.is_wanted():
+        capture.take(engine, depsgraph)
+        return
     messages, maps = Messages(), ()
     try:
         maps = _render_layer(engine, depsgraph, messages)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
@@ -212,6 +213,16 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
         items=PIXEL_FILTERS,
         default=_DEFAULTS.pixel_filter.name,
     )
+    chart_seconds: FloatProperty(
+        name="Time",
+        description="Seconds that Chart Speed vs Accuracy may take. More time gives more points and a surer forecast",
+        default=60.0,
+        min=1.0,
+        soft_min=10.0,
+        soft_max=3600.0,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
     pixel_filter_width: FloatProperty(
         name="Width",
         description="Full width of the pixel filter. Wider is softer and less noisy at edges; the speed is the same",
@@ -263,43 +274,53 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
+#: What Automatic chooses by itself.
+CHOSEN = (
+    *("photon_count", "radius", "estimate", "nearest_count", "brdf_direction", "use_final_gather"),
+    *("use_shadow_photons", "use_photon_guiding", "filter", "cone_k"),
+)
+#: What holds with Automatic, too.
+KEPT = (
+    *("integrator", "max_bounces", "use_caustics", "use_indirect", "seed", "use_progressive", "stop", "passes"),
+    *("pass_offset", "time_limit", "error_target", "pixel_filter", "pixel_filter_width"),
+)
+#: What Automatic chooses beside the defaults: caustics of every sharpness are served by radii that are chosen last.
+AUTOMATIC = {"use_auto": True, "estimate": Estimate.ADAPTIVE}
+ENUMERATIONS = {
+    "integrator": Integrator,
+    "estimate": Estimate,
+    "brdf_direction": BrdfDirection,
+    "filter": Filter,
+    "stop": Stop,
+    "pixel_filter": PixelFilter,
+}
+
+
 def render_settings(scene: bpy.types.Scene) -> RenderSettings:
     """Return what a render is asked to do; with Automatic on, the engine's own choice of photons and kernel."""
     user = scene.photon_maps
-    by_hand = (
-        {"use_auto": True, "estimate": Estimate.ADAPTIVE}
-        if user.use_auto
-        else {
-            "photon_count": user.photon_count,
-            "radius": user.radius,
-            "estimate": Estimate[user.estimate],
-            "nearest_count": user.nearest_count,
-            "brdf_direction": BrdfDirection[user.brdf_direction],
-            "use_final_gather": user.use_final_gather,
-            "use_shadow_photons": user.use_shadow_photons,
-            "use_photon_guiding": user.use_photon_guiding,
-            "filter": Filter[user.filter],
-            "cone_k": user.cone_k,
-        }
-    )
+    names = KEPT if user.use_auto else (*KEPT, *CHOSEN)
+    values = {name: getattr(user, name) for name in names}
     return RenderSettings(
-        integrator=Integrator[user.integrator],
-        max_bounces=user.max_bounces,
-        use_caustics=user.use_caustics,
-        use_indirect=user.use_indirect,
-        seed=user.seed,
-        use_progressive=user.use_progressive,
-        stop=Stop[user.stop],
-        passes=user.passes,
-        pass_offset=user.pass_offset,
-        time_limit=user.time_limit,
-        error_target=user.error_target,
-        pixel_filter=PixelFilter[user.pixel_filter],
-        pixel_filter_width=user.pixel_filter_width,
         film_transparent=scene.render.film_transparent,
         threads=scene.render.threads if scene.render.threads_mode == "FIXED" else 0,
-        **by_hand,
+        **{name: ENUMERATIONS[name][value] if name in ENUMERATIONS else value for name, value in values.items()},
+        **(AUTOMATIC if user.use_auto else {}),
     )
+
+
+def apply_settings(settings: RenderSettings, scene: bpy.types.Scene) -> None:
+    """Set a scene's properties so that render_settings() returns the same again, but for Blender's own.
+
+    Automatic goes off only where something is chosen that it would not choose; else what it hides is left alone.
+    """
+    user = scene.photon_maps
+    automatic = replace(_DEFAULTS, **AUTOMATIC)
+    if any(getattr(settings, name) != getattr(automatic, name) for name in ("use_auto", *CHOSEN)):
+        user.use_auto = False
+    for name in KEPT if user.use_auto else (*KEPT, *CHOSEN):
+        value = getattr(settings, name)
+        setattr(user, name, value.name if name in ENUMERATIONS else value)
 
 
 CLASSES = (PhotonMapsSceneSettings, PhotonMapsViewLayerSettings)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from photon_maps_native import Device, NativeRender, NativeScene, SceneData, Statistics
+from photon_maps_native import Camera, Device, NativeRender, NativeScene, SceneData, Statistics
 
 from .passes import PASSES, Pass
 from .settings import RenderSettings, Stop
@@ -17,6 +17,30 @@ LEAST_PASSES_FOR_ERROR = 4
 MOST_PASSES_FOR_ERROR = 1 << 16
 
 
+class LoadedScene:
+    """A scene in the helper, for several pictures of it; close it after their sessions."""
+
+    def __init__(self, data: SceneData) -> None:
+        """Copy the scene into the helper; the first step of a session builds its acceleration structure.
+
+        :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.
+        """
+        self.camera = data.camera
+        self._device = Device()
+        self.native = NativeScene(self._device, data)
+
+    def close(self) -> None:
+        """Free it; calling it again does nothing."""
+        self.native.close()
+        self._device.close()
+
+    def __enter__(self) -> LoadedScene:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
 class Session:
     """A scene in the helper, and the picture that grows there pass by pass.
 
@@ -24,16 +48,21 @@ class Session:
     """
 
     def __init__(
-        self, scene: SceneData, settings: RenderSettings, buffers: frozenset[Pass] = frozenset({Pass.COMBINED})
+        self,
+        scene: SceneData | LoadedScene,
+        settings: RenderSettings,
+        buffers: frozenset[Pass] = frozenset({Pass.COMBINED}),
+        camera: Camera | None = None,
     ):
-        """Copy the scene into the helper; the first step builds its acceleration structure.
+        """Prepare a picture; scene data is copied into the helper, a loaded scene is shared and left open.
 
+        :param camera: another than the scene's.
         :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.
         """
         self.settings = settings
-        self._device = Device()
-        self._scene = NativeScene(self._device, scene)
-        self._render = NativeRender(self._scene, scene.camera, settings, buffers | {Pass.ERROR})
+        self._own_scene = LoadedScene(scene) if isinstance(scene, SceneData) else None
+        loaded = self._own_scene or scene
+        self._render = NativeRender(loaded.native, camera or loaded.camera, settings, buffers | {Pass.ERROR})
         self._next_pass = settings.pass_offset
         self._started = time.monotonic()
 
@@ -80,8 +109,8 @@ class Session:
     def close(self) -> None:
         """Free everything the helper holds; calling it again does nothing."""
         self._render.close()
-        self._scene.close()
-        self._device.close()
+        if self._own_scene is not None:
+            self._own_scene.close()
 
     def __enter__(self) -> Session:
         return self

@@ -23,6 +23,7 @@ FLOORS = {
     "engine/native": 0,
     "engine/settings": 1,
     "engine/passes": 1,
+    "engine/chart": 2,
     "engine/map_choice": 1,
     "engine/messages": 1,
     "engine/session": 1,
@@ -79,7 +80,8 @@ def test_everything_below_the_export_works_without_blender():
 import sys
 sys.modules["bpy"] = None
 import photon_maps_native
-from engine import map_choice, messages, passes, session, settings, summary
+from engine import last_chart, map_choice, messages, passes, session, settings, summary
+from engine.chart import figure, job, report
 print(sorted(name for name in sys.modules if name.split(".")[0] in {"mathutils", "bmesh", "gpu"}))
 """
     paths = os.pathsep.join([str(ROOT), str(ROOT / "build" / "native")])

@@ -28,19 +28,29 @@ def load(path: Path) -> np.ndarray:
     import bpy
 
     image = bpy.data.images.load(str(path))
+    values = pixels_of(image)
+    bpy.data.images.remove(image)
+    return values
+
+
+def pixels_of(image) -> np.ndarray:
+    """Return the display values of an image of Blender's (height, width, 4), rows from below."""
     width, height = image.size
     pixels = np.empty(width * height * 4, np.float32)
     image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
     return pixels.reshape(height, width, 4)
 
 
 def save_side_by_side(left: np.ndarray, right: np.ndarray, path: Path) -> None:
-    """Write two pictures of one height as .png or .jpg of eight bits a channel, with a white gap between them."""
+    """Write two pictures of one height, with a white gap between them."""
+    gap = np.ones((left.shape[0], GAP, 4), np.float32)
+    save(np.concatenate([left, gap, right], axis=1).astype(np.float32), path)
+
+
+def save(pixels: np.ndarray, path: Path) -> None:
+    """Write a picture (height, width, 4) as .png or .jpg of eight bits a channel."""
     import bpy
 
-    gap = np.ones((left.shape[0], GAP, 4), np.float32)
-    pixels = np.concatenate([left, gap, right], axis=1).astype(np.float32)
     height, width = pixels.shape[:2]
     image = bpy.data.images.new(path.name, width, height, alpha=False)
     image.pixels.foreach_set(pixels.ravel())

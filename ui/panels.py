@@ -16,7 +16,9 @@ from ..engine.render_engine import PhotonMapsEngine
 HELPER = "photon_maps_native"
 
 
-class _Panel:
+class Panel:
+    """What the panels have in common."""
+
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = {PhotonMapsEngine.bl_idname}
@@ -32,7 +34,7 @@ class _Panel:
         return self.layout.column()
 
 
-class PHOTON_MAPS_PT_method(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_method(Panel, bpy.types.Panel):
     bl_label = "Photon Maps"
     bl_context = "render"
 
@@ -53,7 +55,7 @@ class PHOTON_MAPS_PT_method(_Panel, bpy.types.Panel):
         column.prop(settings, "seed")
 
 
-class PHOTON_MAPS_PT_photons(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_photons(Panel, bpy.types.Panel):
     bl_label = "Photons"
     bl_context = "render"
     bl_parent_id = "PHOTON_MAPS_PT_method"
@@ -81,11 +83,11 @@ class PHOTON_MAPS_PT_photons(_Panel, bpy.types.Panel):
         cone.prop(settings, "cone_k")
         by_hand.prop(settings, "brdf_direction")
         for sentence in last_render.recall(context.scene.session_uid, context.view_layer.name).maps:
-            for line in textwrap.wrap(sentence, _line_length(context)):
+            for line in textwrap.wrap(sentence, line_length(context)):
                 column.label(text=line)
 
 
-class PHOTON_MAPS_PT_parts(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_parts(Panel, bpy.types.Panel):
     bl_label = "Parts of the Method"
     bl_context = "render"
     bl_parent_id = "PHOTON_MAPS_PT_method"
@@ -107,7 +109,7 @@ class PHOTON_MAPS_PT_parts(_Panel, bpy.types.Panel):
         guiding.prop(settings, "use_photon_guiding")
 
 
-class PHOTON_MAPS_PT_stop(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_stop(Panel, bpy.types.Panel):
     bl_label = "Stop"
     bl_context = "render"
     bl_parent_id = "PHOTON_MAPS_PT_method"
@@ -121,7 +123,7 @@ class PHOTON_MAPS_PT_stop(_Panel, bpy.types.Panel):
         column.prop(settings, "pass_offset")
 
 
-class PHOTON_MAPS_PT_film(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_film(Panel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -134,7 +136,7 @@ class PHOTON_MAPS_PT_film(_Panel, bpy.types.Panel):
         column.prop(settings, "pixel_filter_width")
 
 
-class PHOTON_MAPS_PT_performance(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_performance(Panel, bpy.types.Panel):
     bl_label = "Performance"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -148,7 +150,7 @@ class PHOTON_MAPS_PT_performance(_Panel, bpy.types.Panel):
         threads.prop(render, "threads")
 
 
-class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_messages(Panel, bpy.types.Panel):
     bl_label = "Messages"
     bl_context = "render"
 
@@ -161,18 +163,18 @@ class PHOTON_MAPS_PT_messages(_Panel, bpy.types.Panel):
             box = column.box().column(align=True)
             box.label(text=message.object, icon="INFO")
             times = f" ({message.count} times)" if message.count > 1 else ""
-            for line in textwrap.wrap(f"{message.text}{times} {message.advice}", _line_length(context)):
+            for line in textwrap.wrap(f"{message.text}{times} {message.advice}", line_length(context)):
                 box.label(text=line)
 
 
-def _line_length(context: bpy.types.Context) -> int:
+def line_length(context: bpy.types.Context) -> int:
     """Return how many letters fit the region's width; Blender's labels do not wrap."""
     letter_width = 7.5 * (context.preferences.system.ui_scale or 1.0)  # 0 without a window
     region_width = context.region.width if context.region else 300
     return max(20, int((region_width - 60) / letter_width))
 
 
-class PHOTON_MAPS_PT_passes(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_passes(Panel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
 
@@ -183,7 +185,7 @@ class PHOTON_MAPS_PT_passes(_Panel, bpy.types.Panel):
             column.prop(getattr(context.view_layer, group) if group else context.view_layer, name)
 
 
-class PHOTON_MAPS_PT_surface(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_surface(Panel, bpy.types.Panel):
     bl_label = "Surface"
     bl_context = "material"
 
@@ -201,7 +203,7 @@ class PHOTON_MAPS_PT_surface(_Panel, bpy.types.Panel):
             self.layout.template_node_view(tree, output, output.inputs["Surface"])
 
 
-class PHOTON_MAPS_PT_beam(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_beam(Panel, bpy.types.Panel):
     bl_label = "Beam Shape"
     bl_context = "data"
 
@@ -213,7 +215,7 @@ class PHOTON_MAPS_PT_beam(_Panel, bpy.types.Panel):
         self.column().prop(context.light, "spread")
 
 
-class PHOTON_MAPS_PT_panorama(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_panorama(Panel, bpy.types.Panel):
     bl_label = "Panorama"
     bl_context = "data"
 
@@ -236,7 +238,7 @@ class PHOTON_MAPS_PT_panorama(_Panel, bpy.types.Panel):
 SEEN_BY_RAYS = {"MESH", "CURVE", "SURFACE", "FONT", "META", "LIGHT"}
 
 
-class PHOTON_MAPS_PT_ray_visibility(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_ray_visibility(Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
@@ -254,7 +256,7 @@ class PHOTON_MAPS_PT_ray_visibility(_Panel, bpy.types.Panel):
             column.prop(context.object, "visible_shadow", text="Shadow")
 
 
-class PHOTON_MAPS_PT_world_visibility(_Panel, bpy.types.Panel):
+class PHOTON_MAPS_PT_world_visibility(Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "world"
     bl_options = {"DEFAULT_CLOSED"}

@@ -118,7 +118,7 @@ def test_parts_of_the_method_are_chosen_by_hand(scene, extension):
         "use_shadow_photons": True,
         "use_photon_guiding": True,
     }
-    defaults = {name: getattr(kinds.RenderSettings(), name) for name in chosen}
+    defaults = {name: getattr(kinds.RenderSettings(), name) for name in chosen} | {"estimate": kinds.Estimate.ADAPTIVE}
     assert {name: getattr(make(scene), name) for name in chosen} == defaults
     for name, value in chosen.items():
         setattr(settings, name, value.name if name in enumerations else value)
@@ -155,12 +155,12 @@ class Layout:
     """Stands for a layout and keeps what is drawn; background Blender draws no panels."""
 
     def __init__(self):
-        self.texts, self.properties = [], []
+        self.texts, self.properties, self.operators = [], [], []
 
     def column(self, **_):
         return self
 
-    box = column
+    box = grid_flow = column
 
     def label(self, text="", **_):
         self.texts.append(text)
@@ -169,13 +169,19 @@ class Layout:
         assert hasattr(data, name), name
         self.properties.append(name)
 
+    def operator(self, name, text=""):
+        group, _, action = name.partition(".")
+        assert action in dir(getattr(bpy.ops, group)), name
+        self.operators.append(SimpleNamespace(name=name, text=text))
+        return self.operators[-1]
+
     def template_node_view(self, *_):
         self.texts.append("nodes")
 
 
-def drawn(extension, name, context=None):
+def drawn(extension, name, context=None, module="panels"):
     """Draw a panel in the context of the open scene, or in a given one."""
-    panel = type("Panel", (getattr(extension.ui.panels, name),), {"layout": None})
+    panel = type("Panel", (getattr(getattr(extension.ui, module), name),), {"layout": None})
     panel = object.__new__(type("Drawn", (), {"layout": Layout(), "column": panel.column, "draw": panel.draw}))
     panel.draw(context or bpy.context)
     return panel.layout
@@ -203,7 +209,11 @@ def test_the_panel_says_which_maps_the_last_render_built(corner, extension):
     assert not drawn(extension, "PHOTON_MAPS_PT_photons").texts
     render(corner)
     texts = " ".join(drawn(extension, "PHOTON_MAPS_PT_photons").texts)
-    assert "Global map: radius" in texts and "No caustic map: nothing focuses light" in texts
+    assert (
+        "Global map: " in texts
+        and "photons a pass, radius" in texts
+        and "No caustic map: nothing focuses light" in texts
+    )
 
 
 def test_panels_of_cameras_objects_and_worlds(scene, extension):
