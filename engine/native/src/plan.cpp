@@ -17,11 +17,12 @@ double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.
 double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
 
 /// Passes until the error is small enough.
-double passes_needed(double camera, double photons, double blur, double error) {
+double passes_needed(double camera, double photons, double blur, double error, bool shrinks) {
     constexpr double fewest = 4, most = 1 << 16;
     const auto squared_error = [&](double passes) {
-        const double shrunk = mean_squared_radius(passes);
-        return (camera + photons * mean_inverse_squared_radius(passes)) / passes + blur * shrunk * shrunk;
+        const double shrunk = shrinks ? mean_squared_radius(passes) : 1;
+        const double inverse = shrinks ? mean_inverse_squared_radius(passes) : 1;
+        return (camera + photons * inverse) / passes + blur * shrunk * shrunk;
     };
     double low = fewest, high = most;
     if (squared_error(low) <= error * error) return low;
@@ -42,7 +43,7 @@ std::vector<double> powers(int range, double steps, int last) {
 
 }  // namespace
 
-Plan plan_for(const PilotNoise &noise, double error) {
+Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
         constexpr double fewest_photons = 1 << 12, most_photons = 1 << 23;
         std::vector<double> counts;
@@ -68,7 +69,7 @@ Plan plan_for(const PilotNoise &noise, double error) {
                     photons += noise.caustic.variance * noise.caustic.count / caustic;
                     cost += caustic * noise.caustic.cost;
                 }
-                cost *= passes_needed(noise.camera_variance, photons, blur, error);
+                cost *= passes_needed(noise.camera_variance, photons, blur, error, shrinks);
                 if (cost >= best_cost) continue;
                 best_cost = cost;
                 best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)}, static_cast<float>(radius)};

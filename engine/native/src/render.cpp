@@ -12,8 +12,6 @@ namespace photon_maps {
 namespace {
 
 constexpr uint32_t photon_stream = 0x70686f74, caustic_stream = 0x63617573, camera_stream = 0x63616d65;
-/// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
-constexpr float largest_nested = 2;
 constexpr uint64_t min_photon_count = 1 << 16, max_photon_count = 1 << 22;
 
 /// Adds the time that a scope takes.
@@ -114,40 +112,6 @@ void Render::leave_out_what_is_done() {
         if (error_->tile_noise(tile) < done * settings_.stop_error) left_out_[tile] = true;
 }
 
-void Render::choose_radii() {
-    // A radius by hand holds for both maps.
-    Radii radii{settings_.kernel.radius, settings_.kernel.radius};
-    const bool is_chosen = !(settings_.kernel.radius > 0);
-    if (!traces(PhotonPurpose::global))
-        radii.indirect = 0;
-    else if (is_chosen)
-        radii.indirect =
-            choose_indirect_radius(scene_, emission_, camera_, tracing(PhotonPurpose::global, 0), &cancel_);
-    if (!traces(PhotonPurpose::caustic))
-        radii.caustic = 0;
-    else if (is_chosen)
-        radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
-    if (is_chosen && is_nested()) radii.caustic *= largest_nested;
-
-    // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
-    Kernel largest = settings_.kernel;
-    largest.radius = std::max(radii.indirect, radii.caustic);
-    if (largest.radius > 0) {
-        const std::span<const FeatureEdge> edges = scene_.feature_edges();
-        edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
-        constexpr double bearable_crowding = 1024;
-        constexpr int most_halvings = 12;
-        for (int halving = 0; is_chosen && edges_.crowding() > bearable_crowding && halving < most_halvings;
-             ++halving) {
-            throw_if_cancelled(&cancel_);
-            largest.radius /= 2;
-            edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
-        }
-        coverage_.emplace(scene_, edges_, largest);
-    }
-    first_radii_ = {std::min(radii.indirect, largest.radius), std::min(radii.caustic, largest.radius)};
-}
-
 Render::Radii Render::radii_of_pass(uint32_t index) const {
     if (!settings_.use_progressive) return *first_radii_;
     return {shrunk_radius(first_radii_->indirect, index), shrunk_radius(first_radii_->caustic, index)};
@@ -240,62 +204,6 @@ CameraPass Render::camera_pass(const Maps &maps, const PhotonMaps &gathers, uint
             index,
             settings_.film_transparent,
             settings_.threads};
-}
-
-/// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
-/// is summed would not be blind to it.
-void Render::make_plan() {
-    constexpr uint32_t pilot_passes = PilotPixels::passes;
-    constexpr uint64_t most_pilot_photons = 1 << 13;
-    const bool is_planned = settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
-                            settings_.integrator == Integrator::photon_map;
-    if (!is_planned || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
-
-    // See what a few passes bring to some pixels.
-    const PhotonCounts whole = counts_;
-    counts_ = {std::min(counts_.global, most_pilot_photons), std::min(counts_.caustic, most_pilot_photons)};
-    PilotPixels pixels(camera_);
-    uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
-    for (uint32_t pilot = 0; pilot < pilot_passes; ++pilot) {
-        const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
-        TracedPhotons photons = trace(index);
-        rays += photons.rays - photons.caustic_rays;
-        caustic_rays += photons.caustic_rays;
-        caustic_stored += photons[PM_PHOTONS_CAUSTIC].size();
-        stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
-        const Maps maps = build_maps(photons, *first_radii_);
-        const PhotonMaps gathers = gathers_of(maps, *first_radii_);
-        pixels.add(camera_pass(maps, gathers, index), &cancel_);
-    }
-
-    // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
-    constexpr double query_cost = 2.5, photon_cost = 0.005, storing_cost = 0.1;
-    const auto cost = [&](uint64_t traced, uint64_t kept, uint64_t count) {
-        const auto emitted = static_cast<double>(count * pilot_passes);
-        return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
-    };
-    const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
-    const double maps = (first_radii_->indirect > 0 ? 1 : 0) + (first_radii_->caustic > 0 ? 1 : 0);
-    PilotNoise &noise = pilot_noise_;
-    pixels.find_noise(noise);
-    if (first_radii_->indirect > 0) {
-        noise.global.count = static_cast<double>(counts_.global);
-        noise.global.cost = cost(rays, stored, counts_.global);
-    }
-    if (first_radii_->caustic > 0) {
-        noise.caustic.count = static_cast<double>(counts_.caustic);
-        if (is_nested()) noise.caustic.variance *= 2;  // the chosen radius has about as much blur as noise
-        noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
-    }
-    noise.pixel_cost = frame * (pixels.rays_per_pixel() + query_cost * maps);
-    noise.gather_cost = frame * photon_cost * usual_photons_in_kernel * static_cast<double>(counts_.global) /
-                        static_cast<double>(whole.global);
-
-    // Without an error to stop at, the one that most pictures are made for.
-    constexpr double usual_error = 0.02;
-    const Plan plan = plan_for(noise, settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error);
-    counts_ = plan.counts;
-    first_radii_->indirect *= plan.global_radius;
 }
 
 void Render::render_into(Film &pass_film, uint32_t index) {

@@ -98,6 +98,7 @@ class Render {
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     void choose_radii();
     void make_plan();
+    PilotNoise run_pilot_passes();
     CameraPass camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);

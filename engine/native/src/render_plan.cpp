@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a render decides before its first pass: the radii, and the photons of a pass.
+#include "parallel.h"
+#include "radius.h"
+#include "render.h"
+
+namespace photon_maps {
+
+namespace {
+
+/// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
+constexpr float largest_nested = 2;
+
+}  // namespace
+
+void Render::choose_radii() {
+    // A radius by hand holds for both maps.
+    Radii radii{settings_.kernel.radius, settings_.kernel.radius};
+    const bool is_chosen = !(settings_.kernel.radius > 0);
+    if (!traces(PhotonPurpose::global))
+        radii.indirect = 0;
+    else if (is_chosen)
+        radii.indirect =
+            choose_indirect_radius(scene_, emission_, camera_, tracing(PhotonPurpose::global, 0), &cancel_);
+    if (!traces(PhotonPurpose::caustic))
+        radii.caustic = 0;
+    else if (is_chosen)
+        radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
+    if (is_chosen && is_nested()) radii.caustic *= largest_nested;
+
+    // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
+    Kernel largest = settings_.kernel;
+    largest.radius = std::max(radii.indirect, radii.caustic);
+    if (largest.radius > 0) {
+        const std::span<const FeatureEdge> edges = scene_.feature_edges();
+        edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
+        constexpr double bearable_crowding = 1024;
+        constexpr int most_halvings = 12;
+        for (int halving = 0; is_chosen && edges_.crowding() > bearable_crowding && halving < most_halvings;
+             ++halving) {
+            throw_if_cancelled(&cancel_);
+            largest.radius /= 2;
+            edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
+        }
+        coverage_.emplace(scene_, edges_, largest);
+    }
+    first_radii_ = {std::min(radii.indirect, largest.radius), std::min(radii.caustic, largest.radius)};
+}
+
+/// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
+/// is summed would not be blind to it.
+PilotNoise Render::run_pilot_passes() {
+    PilotPixels pixels(camera_);
+    uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
+    for (uint32_t pilot = 0; pilot < PilotPixels::passes; ++pilot) {
+        const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
+        TracedPhotons photons = trace(index);
+        rays += photons.rays - photons.caustic_rays;
+        caustic_rays += photons.caustic_rays;
+        caustic_stored += photons[PM_PHOTONS_CAUSTIC].size();
+        stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
+        const Maps maps = build_maps(photons, *first_radii_);
+        const PhotonMaps gathers = gathers_of(maps, *first_radii_);
+        pixels.add(camera_pass(maps, gathers, index), &cancel_);
+    }
+
+    // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
+    constexpr double query_cost = 2.5, storing_cost = 0.1;
+    const auto cost = [](uint64_t traced, uint64_t kept, uint64_t count) {
+        const auto emitted = static_cast<double>(count * PilotPixels::passes);
+        return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
+    };
+    PilotNoise noise;
+    pixels.find_noise(noise);
+    int maps = 0;
+    if (first_radii_->indirect > 0) {
+        ++maps;
+        noise.global.count = static_cast<double>(counts_.global);
+        noise.global.cost = cost(rays, stored, counts_.global);
+    }
+    if (first_radii_->caustic > 0) {
+        ++maps;
+        if (is_nested()) noise.caustic.variance *= 2;  // the chosen radius has about as much blur as noise
+        noise.caustic.count = static_cast<double>(counts_.caustic);
+        noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
+    }
+    const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
+    noise.pixel_cost = frame * (pixels.rays_per_pixel() + query_cost * maps);
+    return noise;
+}
+
+void Render::make_plan() {
+    constexpr uint64_t most_pilot_photons = 1 << 13;
+    const bool is_planned = settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
+                            settings_.integrator == Integrator::photon_map;
+    if (!is_planned || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
+
+    // See what a few passes bring to some pixels.
+    const PhotonCounts usual = counts_;
+    counts_ = {std::min(usual.global, most_pilot_photons), std::min(usual.caustic, most_pilot_photons)};
+    pilot_noise_ = run_pilot_passes();
+
+    // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
+    constexpr double photon_cost = 0.005;
+    const double photons_in_kernel =
+        usual_photons_in_kernel * static_cast<double>(counts_.global) / static_cast<double>(usual.global);
+    pilot_noise_.gather_cost =
+        static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;
+
+    // Without an error to stop at, the one that most pictures are made for.
+    constexpr double usual_error = 0.02;
+    const double error = settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error;
+    const Plan plan = plan_for(pilot_noise_, error, settings_.use_progressive);
+    counts_ = plan.counts;
+    first_radii_->indirect *= plan.global_radius;
+}
+
+}  // namespace photon_maps

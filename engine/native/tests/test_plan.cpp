@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What plans make of pilot passes, where the best split is known.
+#include "check.h"
+#include "plan.h"
+
+using namespace photon_maps;
+using photon_maps::test::Checks;
+
+namespace {
+
+/// Pilot passes of a diffuse room: 10 % of noise a pass by the camera, as much by 8192 photons.
+PilotNoise room() {
+    PilotNoise noise;
+    noise.camera_variance = 0.01;
+    noise.global = {0.01, 1e-7, 8192, 2};
+    noise.pixel_cost = 200'000;
+    noise.gather_cost = 1'000;
+    return noise;
+}
+
+/// Error squared of so many photons after as many passes as a cost affords, without blur or shrinking.
+double squared_error(const PilotNoise &noise, double photons, double cost) {
+    const double pass = noise.pixel_cost + photons * noise.global.cost;
+    return (noise.camera_variance + noise.global.variance * noise.global.count / photons) * pass / cost;
+}
+
+void check_split(Checks &checks) {
+    // Neyman's allocation: effort in proportion to the root of variance by cost.
+    PilotNoise noise = room();
+    const double best = std::sqrt(noise.global.variance * noise.global.count / noise.global.cost /
+                                  (noise.camera_variance / noise.pixel_cost));
+    const Plan plan = plan_for(noise, 0.005, false);
+    const auto chosen = static_cast<double>(plan.counts.global);
+    checks.that(squared_error(noise, chosen, 1) < 1.1 * squared_error(noise, best, 1), "photons by the best split");
+    checks.that(plan.counts.caustic == 0, "no caustic map, no photons for it");
+
+    // Light that the camera finds badly, such as one lamp of many, leaves less for photons, and the other way round.
+    PilotNoise many_lamps = noise, dim_corners = noise;
+    many_lamps.camera_variance *= 100;
+    dim_corners.global.variance *= 100;
+    checks.that(plan_for(many_lamps, 0.01, false).counts.global < plan.counts.global / 4, "camera noise");
+    checks.that(plan_for(dim_corners, 0.01, false).counts.global > plan.counts.global * 4, "photon noise");
+}
+
+void check_radius(Checks &checks) {
+    PilotNoise sharp = room(), blurred = room();
+    sharp.global.blur = 1e-9;
+    blurred.global.blur = 0.04 * 0.04;
+    checks.near(double{plan_for(sharp, 0.02, true).global_radius}, 1, 0, "no blur, no smaller kernels");
+    checks.that(plan_for(blurred, 0.01, true).global_radius < 0.8f, "blur beyond the error wants smaller kernels");
+    checks.that(plan_for(blurred, 0.05, true).global_radius > plan_for(blurred, 0.005, true).global_radius,
+                "the less error, the less blur");
+}
+
+void check_bounds(Checks &checks) {
+    PilotNoise quiet = room();
+    quiet.global.variance = quiet.camera_variance = 0;
+    checks.that(plan_for(quiet, 0.02, true).counts.global == 4096, "nothing to gain, fewest photons");
+    PilotNoise hopeless = room();
+    hopeless.camera_variance = 1e12;
+    checks.that(plan_for(hopeless, 1e-4, true).counts.global >= 4096, "out of reach, still a plan");
+    PilotNoise caustic;
+    caustic.camera_variance = 0.01;
+    caustic.caustic = {0.01, 0, 8192, 3};
+    caustic.pixel_cost = 200'000;
+    const Plan plan = plan_for(caustic, 0.01, true);
+    checks.that(plan.counts.global == 0 && plan.counts.caustic > 8192, "caustics alone");
+}
+
+}  // namespace
+
+int main() {
+    Checks checks;
+    check_split(checks);
+    check_radius(checks);
+    check_bounds(checks);
+    return checks.report();
+}
