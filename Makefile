@@ -28,22 +28,24 @@ export SOURCE_DATE_EPOCH := 315532800
 export PYTHONDONTWRITEBYTECODE := 1
 unexport PYTHONPATH PYTHONHOME
 
-# What is asked of `make demo` and `make beside`; by way of the environment, so that any file name will do.
-export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS
+# What is asked of `make demo`, `make beside` and `make chart`: by way of the environment, so that any file name will do.
+export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside chart-scene prediction seed parts package test test-native test-python test-campaign lint format bench clean
+.PHONY: help demo beside seed chart prediction package test test-native test-python test-campaign lint format \
+    bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make beside    beside Cycles in the same CPU time: [BLEND=file.blend] [OUT=picture.png] [CPU_SECONDS=120]'
-	@echo 'make chart-scene   error against time for a scene of yours: [BLEND=file.blend] [OUT=picture.png] [SECONDS=60]'
 	@echo 'make prediction    the time that such a chart foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
-	@echo 'make parts     what each part of the method costs and gains: [PARTS="--scenes gap --variants \"final gather\""]'
+	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
+	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
+	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
@@ -64,6 +66,17 @@ help:
 
 .venv/seed.stamp: requirements/seed.txt .venv/build.stamp
 	$(PIP) install -r requirements/seed.txt
+	@touch $@
+
+.venv/chart.stamp: requirements/chart.txt .venv/seed.stamp
+	$(PIP) install -r requirements/chart.txt
+	@touch $@
+
+# Without what they ask for but do not need here: CUDA, and another version of what there is.
+.venv/peers.stamp: requirements/peers.txt .venv/build.stamp
+	$(PIP) install --no-deps -r requirements/peers.txt
+	@[ -n "$$(find /usr/lib -name 'libLLVM.so.19*' -print -quit)" ] || bash tools/apt_install.sh libllvm19 || \
+	    echo 'Without libllvm19 Mitsuba runs in its scalar variant only.'
 	@touch $@
 
 .venv/system.stamp: tools/system_libraries.sh .venv/build.stamp
@@ -106,9 +119,6 @@ demo: $(ZIP) .venv/system.stamp
 beside: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/beside_cycles.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$CPU_SECONDS"
 
-chart-scene: $(ZIP) .venv/system.stamp
-	@$(PYTHON) tools/chart_scene.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$SECONDS"
-
 prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)
 
@@ -116,10 +126,15 @@ prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
 seed: build/native/stamp .venv/seed.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.seed.reproduce  # it has threads of its own
 
-# The tables and pictures of docs/method.md; path-traced references are kept there from run to run.
-parts: build/native/stamp .venv/seed.stamp
-	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.parts_bench $(PARTS)
-	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.part_pictures
+# The figures and tables of docs/chart.md and docs/method.md; what is measured is kept there from run to run.
+ifeq ($(BLEND),)
+chart: build/native/stamp .venv/chart.stamp .venv/system.stamp $(if $(PEERS),.venv/peers.stamp)
+	@PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.chart \
+	    --scene "$$SCENE" --method "$$METHOD" $(if $(DOCUMENTS),--documents)
+else
+chart: $(ZIP) .venv/system.stamp
+	@$(PYTHON) tools/chart_scene.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$SECONDS"
+endif
 
 # --- Checks ---
 

@@ -1,197 +1,167 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The chart's arithmetic by closed forms, and a chart of a small scene."""
+"""`make chart`: what it makes of curves, that its scenes are those of its references, and that it goes on."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
-from types import SimpleNamespace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from photon_maps_native import LightType, diffuse
 
-from engine.chart.accuracy import Reference
-from engine.chart.canvas import Canvas, encoded, linear, rendered
-from engine.chart.curve import Curve, Point, compare, usable
-from engine.chart.job import SMALL_PIXELS, ChartJob, Task, small_camera
-from engine.chart.ladder import PRESENT, Size, Variant, build_ladder
-from engine.chart.outcome import TARGETS, Cancelled, ChartError, choices, settings_of
-from engine.chart.report import report
-from engine.chart.words import count, duration, percent
-from engine.settings import Estimate, Integrator, RenderSettings, Stop
-from tests.shapes import camera, lamp, quad, scene
+from benchmarks.chart.analysis import Certainty, error_at, is_flat, pareto_front, price, slope, time_to
+from benchmarks.chart.description import described
+from benchmarks.chart.errors import Row, worst_block
+from benchmarks.chart.methods import DEFAULT, METHODS
+from benchmarks.chart.report import bring_into, grouped, where_others_lead
+from benchmarks.chart.rivals import Rival, RivalFailure
+from benchmarks.chart.scenes import SCENES, StaleReference
+from benchmarks.chart.store import Store
+from tests.reference_scenes import CORNELL
+from tests.shapes import Picture
 
-
-def power_law(factor: float, slope: float, doublings: int = 6, seconds: float = 2.0) -> Curve:
-    """Return a curve whose error is factor * passes^slope and whose passes take equally long."""
-    return Curve(
-        tuple(Point(p, seconds * p, factor * p**slope, p, factor * p**slope) for p in (2**i for i in range(doublings)))
-    )
+SECONDS = np.array([1.0, 2, 4, 8, 16])
 
 
-def corner(power: float = 100.0, size: tuple[int, int] = (48, 36)):
-    """Return a floor and a wall under a lamp."""
-    meshes = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), quad((-1, 0, 1), (0, 2, 0), (0, 0, 1))]
-    light = lamp(LightType.POINT, (0.5, 0, 2), (0, 0, 0), power, size=(0.2, 0.0))
-    return scene(meshes, camera((1, -3, 2), (-0.3, 0, 0.3), size), [diffuse(), diffuse((0.8, 0.2, 0.2))], [light])
+def power_law(scale: float, power: float) -> list[tuple[float, float]]:
+    return [(float(s), float(scale * s**power)) for s in SECONDS]
 
 
-@pytest.mark.parametrize("slope", [-0.5, -0.7, -1 / 3])
-def test_a_power_law_is_continued(slope):
-    curve = power_law(0.4, slope)
-    assert curve.slope == pytest.approx(slope)
-    for passes in (1, 3, 32, 1000):
-        assert curve.error_after(passes) == pytest.approx(0.4 * passes**slope)
-        assert curve.seconds_after(passes) == pytest.approx(2.0 * passes)
-        assert curve.passes_within(2.0 * passes) == pytest.approx(passes)
-    for error in (0.3, 0.05, 0.02):
-        exact = (error / 0.4) ** (1 / slope)
-        assert curve.place_of(error) == pytest.approx(exact) and -1e-6 <= curve.passes_to(error) - exact < 1.0
-    assert curve.passes_to(0.5) == 1
+@pytest.mark.parametrize("power", [-1.0, -2 / 3, 0.5])
+def test_the_slope_of_a_power_law_is_its_power(power: float) -> None:
+    assert slope(power_law(0.3, power)) == pytest.approx(power)
 
 
-def test_a_curve_that_stays_never_arrives():
-    flat = power_law(0.2, 0.0)
-    assert flat.passes_to(0.1) is None and flat.passes_to(0.2) == 1 and flat.error_after(1 << 18) == pytest.approx(0.2)
-    assert flat.knee() == 1
+def test_times_to_an_error_are_those_of_the_power_law() -> None:
+    curve = power_law(1.0, -0.8)
+    for seconds, certainty in ((3.0, Certainty.MEASURED), (40.0, Certainty.EXTRAPOLATED)):
+        crossing = time_to(curve, seconds**-0.8)
+        assert crossing is not None and crossing.certainty is certainty
+        assert crossing.seconds == pytest.approx(seconds)
+        assert error_at(curve, 3.0) == pytest.approx(3.0**-0.8)
+    early = time_to(curve, 2.0)
+    assert early is not None and early.certainty is Certainty.AT_MOST and early.seconds == 1.0
+    assert time_to(curve, 100.0**-0.8) is None  # more than four times the last time
+    assert time_to([(s, 0.1) for s in SECONDS], 0.05) is None
 
 
-def test_the_knee_is_where_a_doubling_takes_off_less_than_a_percentage_point():
-    # 0.4 / sqrt(p) (1 - 1 / sqrt(2)) < 0.01 from p = 137.3 on; the next power of two is 256.
-    assert power_law(0.4, -0.5).knee() == 256
+def test_a_method_that_is_three_times_as_slow_costs_three() -> None:
+    default = power_law(1.0, -1.0)
+    slow = [(3 * s, e) for s, e in default]
+    assert price(slow, default).ratio == pytest.approx(3)
+    assert price(default, slow).ratio == pytest.approx(1 / 3)
+    assert str(price([(s, 5.0) for s in SECONDS], default)) == "stuck at 80"  # 5 over 1 / 16
 
 
-def test_errors_that_rise_by_chance_do_not_make_predictions_fall():
-    points = list(power_law(0.4, -0.5).points)
-    points[3] = replace(points[3], error=0.9)
-    curve = Curve(tuple(points))
-    passes = [curve.passes_to(error) for error in (0.4, 0.3, 0.25, 0.2, 0.15, 0.1, 0.02)]
-    assert passes == sorted(passes)
+def test_an_error_that_has_come_to_its_bias_is_flat() -> None:
+    assert is_flat([(s, 1 / s + 10) for s in SECONDS])
+    assert not is_flat(power_law(1.0, -0.5))
 
 
-def test_variants_are_compared_at_equal_time_and_at_equal_error():
-    # Half the time for a pass, and 1.2 times the error of one: 1.44 times the passes to the same error.
-    compared = compare(power_law(0.48, -0.5, seconds=1.0), power_law(0.4, -0.5))
-    assert compared.seconds == 32.0
-    assert (compared.error, compared.present_error) == pytest.approx((0.48 / math.sqrt(32), 0.4 / math.sqrt(16)))
-    assert compared.speed == pytest.approx(2.0 / 1.44)
-    assert compare(power_law(3.0, -0.1), power_law(0.4, -0.5)).speed is None
+def test_the_front_is_what_nothing_beats_in_both() -> None:
+    random = np.random.default_rng(1)
+    points = [tuple(point) for point in random.uniform(0.1, 1, (200, 2)).tolist()]
+    front = pareto_front(points)
+    for seconds, error in points:
+        is_beaten = any(s <= seconds and e <= error and (s, e) != (seconds, error) for s, e in points)
+        assert ((seconds, error) in front) != is_beaten
 
 
-def test_points_that_the_reference_cannot_tell_are_dropped():
-    points = power_law(0.4, -0.5).points
-    assert usable(points, 0.15) == points[:3] and usable(points, 0.5) == ()
+def test_the_worst_block_is_found() -> None:
+    reference = np.full((32, 32, 3), 0.5)
+    reference[:3, :3] = 100  # a lamp; its block does not count
+    picture = reference.copy()
+    picture[8:16, 16:24] *= 1.3
+    picture[:8, :8] *= 2
+    assert worst_block(picture, reference) == pytest.approx(0.3)
 
 
-def test_the_references_own_error_is_estimated_and_taken_off():
-    generator = np.random.default_rng(1)
-    truth = np.full((200, 200, 3), 2.0)
-
-    def noisy(deviation):
-        return truth + generator.normal(0.0, deviation, truth.shape)
-
-    reference = Reference(noisy(0.05), noisy(0.05))
-    weight = 1.0 / (2.0**2 + 2.0**2)
-    assert reference.own_square == pytest.approx(0.05**2 / 2 * weight, rel=0.03)
-    assert reference.squared_error(noisy(0.04)) == pytest.approx(0.04**2 * weight, rel=0.06)
-    assert abs(reference.squared_error(truth)) < 0.05 * reference.own_square
-    brighter = Reference(1000.0 * reference.first, 1000.0 * reference.second)
-    assert brighter.own_square == pytest.approx(reference.own_square)
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_has_its_reference(name: str) -> None:
+    scene = SCENES[name]
+    reference = scene.reference()
+    width, height = scene.description.camera.resolution
+    assert reference.radiance.shape == (height, width, 3)
+    assert np.isfinite(reference.radiance).all()
+    assert 0 < reference.noise < 1e-3
 
 
-def seen(radius=0.1, caustic=0.1):
-    """Return the statistics that a ladder asks for."""
-    return SimpleNamespace(radius_first=radius, caustic_radius_first=caustic)
+@pytest.mark.parametrize("name", ["plastic", "window", "yard", "metal"])
+def test_a_reference_is_the_picture_of_its_scene(name: str) -> None:
+    """Means over quarters: rows, lights, textures and sky are where they were when it was made."""
+    scene = SCENES[name]
+    pixels = Picture(scene.data(), METHODS["path tracing"].settings(scene, 0, threads=0)).run(16).pixels()
+    found, expected = (p.reshape(2, 64, 2, 64, 3).mean((1, 3)) for p in (pixels, scene.reference().radiance))
+    assert found == pytest.approx(expected, rel=0.06)
 
 
-def test_what_has_no_effect_is_left_out_and_named():
-    def names(base=RenderSettings(), has_lamps=True, **statistics):  # noqa: B008 it is frozen
-        ladder = build_ladder(base, seen(**statistics), has_lamps)
-        assert ladder.variants[0].name == PRESENT
-        return {variant.name for variant in ladder.variants}, {name for out, _ in ladder.left_out for name in out}
-
-    every, none = names()
-    assert none == set() and {"No caustics", "No indirect light", "Shadow photons", "Final gather"} < every
-    assert names(caustic=0.0) == (every - {"No caustics"}, {"No caustics"})
-    assert names(has_lamps=False) == (every - {"Shadow photons"}, {"Shadow photons"})
-    tried, left_out = names(radius=0.0, caustic=0.0)
-    assert tried == {PRESENT, "Path tracing"} and tried | left_out == every
-    assert "Photon map" in names(RenderSettings(integrator=Integrator.PATH_TRACING))[0]
-    assert "With caustics" in names(RenderSettings(use_caustics=False))[0]
-    assert "Radius estimate" in names(RenderSettings(estimate=Estimate.NEAREST))[0]
+@pytest.mark.parametrize("name", SCENES)
+def test_smooth_normals_are_on_the_side_that_faces_wind_about(name: str) -> None:
+    """Where they are not, Cycles shades black."""
+    for mesh, _ in SCENES[name].description.surfaces:
+        if mesh.corner_normals is not None:
+            a, b, c = (mesh.vertices[mesh.triangles[:, corner]].astype(float) for corner in range(3))
+            along = (np.cross(b - a, c - a) * mesh.corner_normals.mean(1)).sum(-1)
+            assert (along >= 0).all() and along.max() > 0
 
 
-def test_variants_at_both_sizes_have_as_many_photons_in_a_kernel():
-    full, small = Size(480_000, 480_000, 0.1), Size(20_000, 120_000, 0.2)
-    base = RenderSettings(radius=0.1, photon_count=480_000)
-    for variant in (Variant("a"), Variant("b", photons=4.0), Variant("c", radius=0.5)):
-        at_full, at_small = variant.settings(base, full), variant.small_settings(base, full, small)
-        held = [settings.photon_count * settings.radius**2 for settings in (at_full, at_small)]
-        assert held[0] == pytest.approx(held[1])
-    assert Variant("a").settings(RenderSettings(), full) == RenderSettings()
+def test_a_changed_scene_makes_its_reference_stale() -> None:
+    gap = SCENES["gap"]
+    moved = replace(gap.description, world=(0.0, 0.0, 1e-3))
+    with pytest.raises(StaleReference, match="another scene"):
+        replace(gap, build=lambda: moved).reference()
+    with pytest.raises(StaleReference, match="has no reference"):
+        replace(gap, name="nowhere").reference()
 
 
-@pytest.mark.parametrize("region", [(0, 0, 1920, 1080), (300, 200, 700, 800), (5, 5, 40, 30)])
-def test_the_small_camera_sees_the_same(region):
-    full = replace(camera((0, 0, 5), (0, 0, 0), (1920, 1080)), region=region)
-    small = small_camera(full)
-    x, y, width, height = small.region
-    assert width * height <= 1.05 * SMALL_PIXELS
-    for axis, (low, size) in enumerate(((x, width), (y, height))):
-        factor = small.resolution[axis] / full.resolution[axis]
-        assert abs(low - factor * region[axis]) <= 1.0
-        assert abs(low + size - factor * (region[axis] + region[axis + 2])) <= 1.0
-        assert low + size <= small.resolution[axis]
-    assert small.window == full.window and np.array_equal(small.transform, full.transform)
+def test_the_shared_scenes_are_described_as_they_are() -> None:
+    mine, given = described(CORNELL).data(), CORNELL.data()
+    assert len(mine.meshes) == len(given.meshes)
+    for a, b in zip(mine.materials, given.materials, strict=True):
+        assert np.array_equal(a.constants, b.constants) and np.array_equal(a.instructions, b.instructions)
+    assert mine.lights[0].power == given.lights[0].power
 
 
-def test_a_canvas_shows_its_marks():
-    black, red = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
-    canvas = Canvas((40, 20), (1.0, 1.0, 1.0), lambda text, size, align: np.zeros((0, 3, 2)))
-    canvas.polygon([(0, 0), (10, 0), (10, 20), (0, 20)], black)
-    canvas.shape("square", (25, 10), 5, (0.5, 0.5, 0.5))
-    canvas.line([(20, 10), (30, 10)], 4, red)
-    picture = rendered(canvas.scene())
-    assert picture.shape == (20, 40, 3)
-    assert np.allclose(picture[10, 4], 0.0, atol=0.01) and np.allclose(picture[2, 36], 1.0, atol=0.01)
-    assert np.allclose(picture[10, 25], red, atol=0.01) and np.allclose(picture[13, 25], 0.5, atol=0.01)
-    assert np.allclose(encoded(linear(np.linspace(0, 1, 33))), np.linspace(0, 1, 33), atol=1e-6)
+def test_the_default_is_the_engine_s() -> None:
+    """All of the chart's methods differ from it, and it differs from none."""
+    scene = SCENES["cornell"]
+    default = DEFAULT.settings(scene, 0.0)
+    assert [m.name for m in METHODS.values() if m.settings(scene, 0.0) == default] == [DEFAULT.name]
+    assert not DEFAULT.fields
 
 
-def test_a_chart_of_a_small_scene():
-    base = RenderSettings(passes=8, stop=Stop.PASSES)
-    chart = ChartJob(Task("Corner", corner(), base, 12.0)).run()
-    present = chart.rows[0]
-    assert present.curve.points[-1].error < 0.7 * present.curve.points[0].error
-    foretold = [chart.until(present, error) for error in TARGETS]
-    passes = [prediction.passes for prediction in foretold if prediction]
-    assert passes == sorted(passes) and all(prediction.cpu_seconds > 0.0 for prediction in foretold if prediction)
-    # The picture is so small that it is its own small picture: what is foretold of noise and time is what is measured.
-    assert chart.full.resolution == chart.small_resolution
-    assert present.curve.points[0].error == pytest.approx(present.curve.points[0].small_error, rel=0.05)
-    for choice in choices(chart):
-        made = settings_of(choice)
-        assert (made.stop, made.passes) == (Stop.PASSES, choice.point.passes)
-        assert replace(made, passes=8) == choice.row.settings
-    text = report(chart)
-    assert all(row.variant.name in text for row in chart.rows) and "nothing focuses light" in text
+def test_rows_are_kept_until_what_they_depend_on_changes(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    rows = [Row("gap", "cone, k = 1", 4, 1.5, 0.1, 0.2, -0.01, 0.3, 0.05)]
+    assert store.load("gap-cone, k = 1", "key", Row) is None
+    store.keep("gap-cone, k = 1", "key", rows)
+    assert store.load("gap-cone, k = 1", "key", Row) == rows
+    assert store.load("gap-cone, k = 1", "other", Row) is None
 
 
-def test_a_cancelled_chart_stops():
-    job = ChartJob(Task("Corner", corner(), RenderSettings(), 1000.0))
-    job.cancel()
-    with pytest.raises(Cancelled):
-        job.run()
+def test_another_engine_that_fails_says_why(tmp_path: Path) -> None:
+    absent = Rival("Absent", "absent", "photon-maps-absent-engine", lambda scene: True)
+    assert absent.version() is None
+    with pytest.raises(RivalFailure, match=r"No module named benchmarks\.chart\.absent"):
+        absent.measure(SCENES["cornell"], tmp_path)
 
 
-def test_a_black_picture_has_no_chart():
-    with pytest.raises(ChartError, match="black"):
-        ChartJob(Task("Dark", corner(power=0.0), RenderSettings(), 2.0)).run()
+def test_what_others_do_sooner_is_said() -> None:
+    """Twice as fast in one scene, half as fast in another."""
+
+    def rows(scene: str, method: str, slowness: float) -> list[Row]:
+        return [Row(scene, method, 1, slowness * s, e, e, 0.0, 0.0, 0.0) for s, e in power_law(0.1, -1.0)]
+
+    ours = [*rows("gap", DEFAULT.name, 1.0), *rows("yard", DEFAULT.name, 1.0)]
+    found = grouped([*ours, *rows("gap", "Cycles", 2.0), *rows("yard", "Cycles", 0.5)])
+    text = where_others_lead(found)
+    assert "faster to the same error in 1 of the scenes: yard (Cycles, 2.0 times)" in text
+    assert "In gap the photon map is the faster, by 2 times" in text
 
 
-def test_words():
-    assert [duration(s) for s in (0.41, 12.3, 59.7, 200, 7500)] == ["0.4 s", "12 s", "1 min 0 s", "3 min 20 s",
-                                                                    "2 h 5 min"]  # fmt: skip
-    assert [percent(e) for e in (0.00523, 0.0312, 0.241)] == ["0.52 %", "3.1 %", "24 %"]
-    assert [count(n, "pass") for n in (1, 8, 1644)] == ["1 pass", "8 passes", "1,644 passes"]
+def test_tables_are_brought_into_documents(tmp_path: Path) -> None:
+    document = tmp_path / "chart.md"
+    text = "A\n<!-- chart: times -->\n{}<!-- chart end -->\nB\n<!-- chart: gather -->\nkept\n<!-- chart end -->\n"
+    document.write_text(text.format("old\n"))
+    bring_into(document, {"times": "new \\1\n"})
+    assert document.read_text() == text.format("new \\1\n")
