@@ -34,7 +34,7 @@ def _explain_global(settings: RenderSettings, statistics: Statistics) -> str:
         return f"Global map: {statistics.photon_count:,} photons a pass, {radii}."
     if not settings.use_indirect:
         return "No global map: Indirect Light is off."
-    return "No global map: no light comes from one surface to another."
+    return "No global map: no light comes from one diffuse surface to another."
 
 
 def _explain_caustic(settings: RenderSettings, statistics: Statistics) -> str:

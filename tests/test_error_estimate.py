@@ -75,7 +75,7 @@ def test_what_is_done_gets_no_more_samples() -> None:
     assert 0.2 < statistics.done < 1.0
     whole = Picture(still_life(), box_filtered(), BUFFERS).run(statistics.passes)
     assert (
-        whole.render.statistics().done == 0.0 and whole.render.statistics().shadow_rays > 1.1 * statistics.shadow_rays
+        whole.render.statistics().done == 0.0 and whole.render.statistics().shadow_rays > 1.05 * statistics.shadow_rays
     )
     same = (whole.render.read(Pass.COMBINED, 4) == stopped).all(-1)
     assert 0.05 < same.mean() < 1.0

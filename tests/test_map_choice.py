@@ -25,8 +25,13 @@ def rendered(settings: RenderSettings, ball=GLASS, power: float = 100.0):
 @pytest.mark.parametrize(
     ("fields", "ball", "maps", "words"),
     [
-        ({}, GLASS, ["global", "caustic"], ("Global map: radius", "Caustic map: radius")),
-        ({}, FLOOR, ["global"], ("Global map: radius", "No caustic map: nothing focuses light")),
+        (
+            {},
+            GLASS,
+            ["global", "caustic"],
+            ("Global map: 2,000 photons a pass, radius", "Caustic map: 2,000 photons a pass, radius"),
+        ),
+        ({}, FLOOR, ["global"], ("Global map: 2,000 photons a pass, radius", "No caustic map: nothing focuses light")),
         ({"use_caustics": False}, GLASS, ["global"], ("Global map", "No caustic map: Caustics is off")),
         ({"use_indirect": False}, GLASS, ["caustic"], ("No global map: Indirect Light is off", "Caustic map")),
         ({"max_bounces": 0}, GLASS, [], ("No photon maps: Max Bounces is 0",)),
@@ -48,9 +53,19 @@ def test_without_light_there_is_no_map():
     statistics = rendered(settings, power=0.0)
     assert maps_built(statistics) == [] and statistics.photons_emitted == 0
     assert explain_maps(settings, statistics) == (
-        "No global map: there is no light, or nothing that it falls on.",
+        "No global map: no light comes from one diffuse surface to another.",
         "No caustic map: no focused light falls on a diffuse surface.",
     )
+
+
+@pytest.mark.parametrize("color", [(0.0, 0.0, 0.0), (0.5, 0.5, 0.5)])
+def test_where_nothing_scatters_diffusely_no_photon_is_traced(color):
+    """Light that black surfaces would send on is none."""
+    meshes = [quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((1, 0, 1), (0, 1, 0), (0, 0, 1))]
+    light = lamp(LightType.POINT, (0, 0, 2), (0, 0, 0), 10.0, size=(0.05, 0.0))
+    data = scene(meshes, camera((0, -4, 2), (0, 0, 0), (8, 8)), [diffuse(color)] * 2, [light])
+    statistics = Picture(data, RenderSettings(photon_count=2000)).run(1).render.statistics()
+    assert (statistics.photons_emitted == 0) == (maps_built(statistics) == []) == (color[0] == 0.0)
 
 
 def test_before_the_first_pass_nothing_is_said():

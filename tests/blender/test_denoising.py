@@ -36,7 +36,7 @@ def root_mean_square(picture):
 
 def test_the_denoise_node_lowers_the_error_and_keeps_the_light(corner):
     corner.render.resolution_x = corner.render.resolution_y = 96
-    corner.photon_maps.passes = 128
+    corner.photon_maps.passes, corner.photon_maps.use_auto = 128, False
     reference = render(corner)["Combined"][..., :3]
     corner.photon_maps.passes, corner.photon_maps.seed = 1, 1
     corner.view_layers[0].photon_maps.use_pass_denoising = True

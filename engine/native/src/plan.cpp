@@ -45,7 +45,8 @@ std::vector<double> powers(int range, double steps, int last) {
 
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
-        constexpr double fewest_photons = 1 << 12, most_photons = 1 << 23;
+        // Fewer would cost no less: a pass of a small picture has other things to do.
+        constexpr double fewest_photons = 1 << 14, most_photons = 1 << 23;
         std::vector<double> counts;
         if (map.count == 0) return std::vector<double>{0};
         for (const double factor : powers(8, 2, 12))

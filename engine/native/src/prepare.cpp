@@ -60,6 +60,7 @@ float principled_specular(const KnownArguments &a) {
 Lobes lobes_of(const KnownArguments &a) {
     switch (a.instruction.op) {
         case PM_OP_DIFFUSE:
+            return a.may(0) ? Lobes{diffuse_reflection} : 0;
         case PM_OP_SHEEN:
             return diffuse_reflection;
         case PM_OP_TRANSLUCENT:

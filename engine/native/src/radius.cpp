@@ -100,11 +100,10 @@ float shrunk_radius(float first_radius, uint32_t index) {
 float choose_indirect_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                              const PhotonTracing &pass, const std::atomic<bool> *cancel) {
     const Pilot pilot(scene, emission, pass, PM_PHOTONS_INDIRECT, cancel);
-    if (pilot.map.size() == 0) return 0;
     const float max_radius = scene.bounds().radius();
 
     // Find what radius holds k of them around points that the camera sees; where it sees too little to judge by, around
-    // the photons themselves.
+    // the photons themselves. Without any, any radius will do.
     const double k = pilot.stands_for(usual_photons_in_kernel, 16);
     std::vector<float> radii;
     for (const SeenPoint &point : seen_points(scene, camera, pass.seed, cancel)) {
@@ -113,13 +112,13 @@ float choose_indirect_radius(const Scene &scene, const Emission &emission, const
         radii.push_back(radius_holding(pilot.map, query, static_cast<size_t>(k), max_radius));
     }
     if (radii.empty()) radii = radii_around_photons(pilot.map, k, max_radius, cancel);
+    if (radii.empty()) return max_radius / 100;
     return scaled(median(radii), usual_photons_in_kernel, pilot, k);
 }
 
 float choose_caustic_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                             const PhotonTracing &pass, const std::atomic<bool> *cancel) {
     const Pilot pilot(scene, emission, pass, PM_PHOTONS_CAUSTIC, cancel);
-    if (pilot.map.size() == 0) return 0;
 
     // Around the photons, not the pixels: it is where they lie densely that a caustic is sharp.
     const float max_radius = scene.bounds().radius() / 8;

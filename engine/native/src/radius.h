@@ -20,7 +20,7 @@ float shrunk_radius(float first_radius, uint32_t index);
 /// Chooses the first radius of the global map so that the kernel of a typical pixel holds `usual_photons_in_kernel`
 /// photons of one pass: by the density of pilot photons, which no picture sums - a radius from the photons themselves
 /// would brighten it.
-/// @return 0 if no pilot photon met a second surface
+/// @return above 0 in a scene that has surfaces, even if no pilot photon fell anywhere
 float choose_indirect_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                              const PhotonTracing &pass, const std::atomic<bool> *cancel);
 

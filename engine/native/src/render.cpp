@@ -45,6 +45,8 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       camera_(camera),
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
+      receives_(std::ranges::any_of(
+          scene.slot_materials, [&](uint32_t m) { return (scene.materials[m].traits.lobes & diffuse_lobes) != 0; })),
       counts_(photon_counts_for(settings, camera)),
       film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
@@ -54,7 +56,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
 bool Render::traces(PhotonPurpose purpose) const {
     const bool wants_photons =
         (settings_.integrator == Integrator::photon_map || is_guided()) && settings_.max_bounces > 0;
-    if (!wants_photons || emission_.empty() || scene_.instances.empty()) return false;
+    if (!wants_photons || emission_.empty() || scene_.instances.empty() || !receives_) return false;
     return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
                                              : settings_.use_indirect;
 }

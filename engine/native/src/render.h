@@ -114,6 +114,7 @@ class Render {
     Camera camera_;
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
+    bool receives_;  ///< whether any surface may scatter light diffusely, so that photons are of use
     PhotonCounts counts_;
     PilotNoise pilot_noise_;
     std::optional<Radii> first_radii_;  ///< of pass 0, once chosen

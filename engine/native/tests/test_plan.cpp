@@ -27,6 +27,7 @@ double squared_error(const PilotNoise &noise, double photons, double cost) {
 void check_split(Checks &checks) {
     // Neyman's allocation: effort in proportion to the root of variance by cost.
     PilotNoise noise = room();
+    noise.pixel_cost *= 16;
     const double best = std::sqrt(noise.global.variance * noise.global.count / noise.global.cost /
                                   (noise.camera_variance / noise.pixel_cost));
     const Plan plan = plan_for(noise, 0.005, false);
@@ -37,9 +38,9 @@ void check_split(Checks &checks) {
     // Light that the camera finds badly, such as one lamp of many, leaves less for photons, and the other way round.
     PilotNoise many_lamps = noise, dim_corners = noise;
     many_lamps.camera_variance *= 100;
-    dim_corners.global.variance *= 100;
+    dim_corners.global.variance *= 25;
     checks.that(plan_for(many_lamps, 0.01, false).counts.global < plan.counts.global / 4, "camera noise");
-    checks.that(plan_for(dim_corners, 0.01, false).counts.global > plan.counts.global * 4, "photon noise");
+    checks.that(plan_for(dim_corners, 0.01, false).counts.global > plan.counts.global * 3, "photon noise");
 }
 
 void check_radius(Checks &checks) {
@@ -55,10 +56,10 @@ void check_radius(Checks &checks) {
 void check_bounds(Checks &checks) {
     PilotNoise quiet = room();
     quiet.global.variance = quiet.camera_variance = 0;
-    checks.that(plan_for(quiet, 0.02, true).counts.global == 4096, "nothing to gain, fewest photons");
+    checks.that(plan_for(quiet, 0.02, true).counts.global == 1 << 14, "nothing to gain, fewest photons");
     PilotNoise hopeless = room();
     hopeless.camera_variance = 1e12;
-    checks.that(plan_for(hopeless, 1e-4, true).counts.global >= 4096, "out of reach, still a plan");
+    checks.that(plan_for(hopeless, 1e-4, true).counts.global >= 1 << 14, "out of reach, still a plan");
     PilotNoise caustic;
     caustic.camera_variance = 0.01;
     caustic.caustic = {0.01, 0, 8192, 3};
