@@ -33,12 +33,13 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart prediction package test test-native test-python test-campaign lint format \
+.PHONY: help demo beside seed chart prediction calibration package test test-native test-python test-campaign lint format \
     bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make beside    beside Cycles in the same CPU time: [BLEND=file.blend] [OUT=picture.png] [CPU_SECONDS=120]'
+	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
 	@echo 'make prediction    the time that such a chart foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
@@ -118,6 +119,10 @@ demo: $(ZIP) .venv/system.stamp
 
 beside: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/beside_cycles.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$CPU_SECONDS"
+
+# Draws build/chart/calibration.png of docs/error.md.
+calibration: build/native/stamp .venv/chart.stamp
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.calibration_bench $(CALIBRATION)
 
 prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)

@@ -91,7 +91,8 @@ def render_full(captured: Captured, target: float, limit: float) -> Curve:
         with Session(scene, captured.settings) as session:
             session.step()
             count = session.statistics().photon_count
-        halves = [Session(scene, reference_settings(captured.settings, Size(0, count, 0.0), half)) for half in (2, 3)]
+        size = Size(0, count, 0.0)
+        halves = [Session(scene, reference_settings(captured.settings, size, size, half)) for half in (2, 3)]
         started = time.process_time()
         while time.process_time() - started < limit:
             for half in halves:

@@ -93,6 +93,12 @@ def _render_layer(
         engine.update_stats("", " ".join(maps))
         if statistics.passes == 0:
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
+        if settings.stop == Stop.ERROR and session.progress >= 1.0 and not statistics.error <= settings.error_target:
+            messages.add(
+                depsgraph.scene.name,
+                f"stopped at an estimated error of {statistics.error:.2%}, for more passes would not lower it.",
+                f"Raise the Error, or switch on Shrinking Radius; {settings.error_target:.2%} was asked for.",
+            )
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
         picture.show(session, summary)
     if bpy.app.background:
@@ -159,9 +165,9 @@ def _tell(engine: bpy.types.RenderEngine, session: Session) -> None:
     limit = {
         Stop.PASSES: f" of {settings.passes}",
         Stop.TIME: f", {settings.time_limit:g} s in all",
-        Stop.ERROR: f", until the error is {settings.error_target:.1%}",
+        Stop.ERROR: f", until the error is {settings.error_target:.2%}",
     }[settings.stop]
-    error = "" if math.isinf(statistics.error) else f" | error about {statistics.error:.1%}"
+    error = f" | error about {statistics.error:.2%}" if math.isfinite(statistics.error) else ""
     engine.update_progress(session.progress)
     engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
     engine.update_stats(

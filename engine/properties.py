@@ -312,13 +312,13 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
 def apply_settings(settings: RenderSettings, scene: bpy.types.Scene) -> None:
     """Set a scene's properties so that render_settings() returns the same again, but for Blender's own.
 
-    Automatic goes off only where something is chosen that it would not choose; else what it hides is left alone.
+    Automatic goes off where something is chosen that it would not choose; else what it hides is left alone.
     """
     user = scene.photon_maps
     automatic = replace(_DEFAULTS, **AUTOMATIC)
-    if any(getattr(settings, name) != getattr(automatic, name) for name in ("use_auto", *CHOSEN)):
-        user.use_auto = False
-    for name in KEPT if user.use_auto else (*KEPT, *CHOSEN):
+    user.use_auto = all(getattr(settings, name) == getattr(automatic, name) for name in ("use_auto", *CHOSEN))
+    names = KEPT if user.use_auto else (*KEPT, *CHOSEN)
+    for name in set(names) - {"pass_offset"}:  # which share of the picture this machine renders is not the chart's
         value = getattr(settings, name)
         setattr(user, name, value.name if name in ENUMERATIONS else value)
 

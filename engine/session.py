@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 
 import numpy as np
@@ -92,8 +93,11 @@ class Session:
         return passes / self.settings.passes
 
     def _progress_to_error(self, passes: int) -> float:
-        error, target = self.statistics().error, self.settings.error_target
-        if passes >= MOST_PASSES_FOR_ERROR or (passes >= LEAST_PASSES_FOR_ERROR and error <= target):
+        statistics, target = self.statistics(), self.settings.error_target
+        error = statistics.error
+        is_reached = passes >= LEAST_PASSES_FOR_ERROR and error <= target
+        # Radiance too bright to be squared has no error that is a number; nor is there more to do when all is done.
+        if is_reached or passes >= MOST_PASSES_FOR_ERROR or statistics.done >= 1.0 or math.isnan(error):
             return 1.0
         # Errors fall with the square root of the time.
         return min(0.99, (target / error) ** 2) if error > target else min(0.99, passes / LEAST_PASSES_FOR_ERROR)

@@ -77,7 +77,7 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         radius_first=statistics.radius_first,
         radius_last=statistics.radius_last,
         peak_memory_bytes=statistics.memory_bytes,
-        error_estimate=None if math.isinf(statistics.error) else round(statistics.error, 6),
+        error_estimate=round(statistics.error, 6) if math.isfinite(statistics.error) else None,
         plan=plan_of(statistics),
         maps=maps_built(statistics),
         messages=[str(message) for message in messages],

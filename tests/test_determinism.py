@@ -105,8 +105,27 @@ def test_a_render_goes_on_after_a_cancel_as_if_undisturbed() -> None:
     np.testing.assert_array_equal(picture.pixels(), Picture(still_life(), box_filtered()).run(3).pixels())
 
 
+def test_a_plan_is_the_same_after_a_cancel() -> None:
+    """Wherever in its preparations the first pass was stopped."""
+    planned = box_filtered(use_auto=True)
+    undisturbed = Picture(still_life(), planned).run(1)
+    stopped = 0
+    for delay in (0.002, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08):
+        picture = Picture(still_life(), planned)
+        timer = threading.Timer(delay, picture.render.cancel)
+        timer.start()
+        stopped += not picture.render.render_pass(0)
+        timer.join()
+        if picture.render.statistics().passes == 0:
+            while not picture.render.render_pass(0):  # a cancel that came late
+                pass
+            np.testing.assert_array_equal(picture.pixels(), undisturbed.pixels())
+    assert stopped > 2
+
+
+@pytest.mark.parametrize("planned", [False, True])
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
-def test_the_scene_in_other_units_is_the_same_picture(scale: float) -> None:
+def test_the_scene_in_other_units_is_the_same_picture(scale: float, planned: bool) -> None:
     """Lengths times s and powers times s squared: the same radiance."""
     data = still_life()
     matrix = data.camera.transform.copy()
@@ -124,7 +143,8 @@ def test_the_scene_in_other_units_is_the_same_picture(scale: float) -> None:
         lights=lights,
         instances=replace(data.instances, transforms=transforms),
     )
-    first, second = (Picture(d, box_filtered()).run(8).pixels() for d in (data, scaled))
+    settings = box_filtered(use_auto=planned)
+    first, second = (Picture(d, settings).run(8).pixels() for d in (data, scaled))
     assert second.mean() == pytest.approx(first.mean(), rel=2e-3)
     difference = np.abs(first - second).mean() / first.mean()
     assert difference < 0.01

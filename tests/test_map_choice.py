@@ -7,8 +7,8 @@ import pytest
 from photon_maps_native import LightType, diffuse
 
 from engine.map_choice import explain_maps, maps_built
-from engine.settings import Integrator, RenderSettings
-from tests.reference_scenes import Glass, substance_material
+from engine.settings import Estimate, Integrator, RenderSettings
+from tests.reference_scenes import Glass, Metal, substance_material
 from tests.shapes import Picture, camera, lamp, quad, scene, sphere
 
 GLASS, FLOOR = substance_material(Glass(1.5)), diffuse()
@@ -56,6 +56,17 @@ def test_without_light_there_is_no_map():
         "No global map: no light comes from one diffuse surface to another.",
         "No caustic map: no focused light falls on a diffuse surface.",
     )
+
+
+@pytest.mark.parametrize("fields", [{}, {"use_auto": True, "estimate": Estimate.ADAPTIVE}])
+def test_a_mirror_that_lights_nothing_makes_no_caustic_map(fields):
+    """What it reflects goes up and away."""
+    mirror = substance_material(Metal((0.9, 0.9, 0.9)))
+    meshes = [quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((3, 0, -1), (1, 0, 0), (0, 1, 0))]
+    light = lamp(LightType.POINT, (0, 0, 2), (0, 0, 0), 10.0, size=(0.05, 0.0))
+    data = scene(meshes, camera((0, -8, 4), (1, 0, 0), (8, 8)), [mirror, diffuse()], [light])
+    statistics = Picture(data, RenderSettings(**fields)).run(2).render.statistics()
+    assert statistics.caster_count == 1 and statistics.caustic_photons == 0 and "caustic" not in maps_built(statistics)
 
 
 @pytest.mark.parametrize("color", [(0.0, 0.0, 0.0), (0.5, 0.5, 0.5)])

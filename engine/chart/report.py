@@ -105,7 +105,7 @@ def _points(chart: Chart) -> list[str]:
 
 def _meaning(chart: Chart) -> list[str]:
     return [
-        "Error is the root of the mean square of a pixel's relative error; pixels darker than a tenth of the picture's",
-        "mean count as if they had it, and the worst thousandth is left out. CPU time is that of all threads together.",
+        "Error is the root of the mean square of a pixel's error relative to its radiance and to the picture's mean,",
+        "squared and added; the worst thousandth is left out. CPU time is that of all threads together.",
         f"Set-up takes {duration(chart.full.setup_seconds)} of it. Made in {duration(chart.seconds)}.",
     ]

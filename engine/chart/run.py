@@ -142,4 +142,5 @@ def rgb(session: Session) -> np.ndarray:
 def size_of(pixels: int, session: Session) -> Size:
     """Return what photons and radius are at a size, from a session that has rendered a pass."""
     statistics = session.statistics()
-    return Size(pixels, statistics.photon_count, statistics.radius_first or statistics.caustic_radius_first)
+    count = statistics.photon_count or statistics.caustic_photon_count
+    return Size(pixels, count, statistics.radius_first or statistics.caustic_radius_first)

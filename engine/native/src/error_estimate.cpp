@@ -97,7 +97,11 @@ void ErrorEstimate::compare_halves(const Film &film) {
         });
     }
     const float expected = trimmed_mean(independent);
-    if (!(expected > 0)) return;
+    if (!(expected > 0)) {  // nothing varies, or all is done: what was measured last holds on
+        measured_gain_ = gain_;
+        measured_at_ = passes_;
+        return;
+    }
     const float ratio = trimmed_mean(halves) / expected;
     constexpr float usual_decay = 0.85f, least_decay = 0.4f;
     if (passes_ == 2) {
@@ -131,7 +135,7 @@ void ErrorEstimate::estimate_blur(const Film &film) {
 /// Where caustics are read by another radius than the passes' own, that one's variance takes the place of theirs, and
 /// its blur counts too.
 void ErrorEstimate::add_nested(const Film &film) {
-    const std::vector<float> levels = film.nested()->chosen_levels();
+    const std::vector<float> levels = film.nested()->chosen_levels(film.tile_passes());
     std::vector<float> blur(squares_.size());
     for (size_t pixel = 0; pixel < squares_.size(); ++pixel) {
         const auto x = static_cast<uint32_t>(pixel % tiles_.width), y = static_cast<uint32_t>(pixel / tiles_.width);

@@ -77,6 +77,7 @@ class Film {
     uint32_t passes() const { return passes_; }
     /// Passes that a tile was rendered in.
     uint32_t passes_of(size_t tile) const { return tile_passes_[tile]; }
+    const std::vector<uint32_t> &tile_passes() const { return tile_passes_; }
     /// Caustics by nested radii; null where they are not kept.
     NestedFilm *nested() { return nested_ ? &*nested_ : nullptr; }
     const NestedFilm *nested() const { return nested_ ? &*nested_ : nullptr; }

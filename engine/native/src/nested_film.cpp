@@ -74,15 +74,18 @@ void NestedFilm::visit_around(uint32_t x, uint32_t y, const Visit &visit) const 
 
 /// Returns the variance of each level's brightness. That no photon came does not mean that none could: with Jeffreys'
 /// prior the rate of a Poisson process that brought n is n + 1/2.
-Float8 NestedFilm::variance_around(uint32_t x, uint32_t y) const {
+Float8 NestedFilm::variance_around(uint32_t x, uint32_t y, const std::vector<uint32_t> &passes) const {
+    const auto own = static_cast<float>(passes[tile_of(x, y)]);
     Float8 variance{}, brightness{};
     float count = 0;
     visit_around(x, y, [&](uint32_t u, uint32_t v) {
         ++count;
         const Sums *sums = at(u, v);
         if (!sums) return;
-        variance += sums->variance;
-        brightness += sums->brightness();
+        // Neighbours in other tiles may have had other numbers of passes.
+        const float scale = own / static_cast<float>(passes[tile_of(u, v)]);
+        variance += sums->variance * scale;
+        brightness += sums->brightness() * scale;
     });
     // What one photon brings to the largest radius, where most are seen, and to the others by their areas.
     const float largest = brightness[largest_level];
@@ -91,12 +94,12 @@ Float8 NestedFilm::variance_around(uint32_t x, uint32_t y) const {
 }
 
 /// Returns for every pixel the largest level that agrees with all smaller ones.
-std::vector<float> NestedFilm::agreeing_levels() const {
+std::vector<float> NestedFilm::agreeing_levels(const std::vector<uint32_t> &passes) const {
     std::vector<float> chosen(size_t{grid_.width} * grid_.height, static_cast<float>(largest_level));
     for (uint32_t y = 0; y < grid_.height; ++y) {
         for (uint32_t x = 0; x < grid_.width; ++x) {
             if (const Sums *sums = at(x, y)) {
-                const Float8 deviation = sqrt(variance_around(x, y));
+                const Float8 deviation = sqrt(variance_around(x, y, passes));
                 chosen[size_t{y} * grid_.width + x] =
                     static_cast<float>(last_that_agrees(sums->brightness(), deviation));
             }
@@ -105,8 +108,8 @@ std::vector<float> NestedFilm::agreeing_levels() const {
     return chosen;
 }
 
-std::vector<float> NestedFilm::chosen_levels() const {
-    const std::vector<float> agreeing = agreeing_levels();
+std::vector<float> NestedFilm::chosen_levels(const std::vector<uint32_t> &passes) const {
+    const std::vector<float> agreeing = agreeing_levels(passes);
     std::vector<float> chosen(agreeing.size(), static_cast<float>(largest_level));
     for (uint32_t y = 0; y < grid_.height; ++y) {
         for (uint32_t x = 0; x < grid_.width; ++x) {
@@ -123,7 +126,7 @@ std::vector<float> NestedFilm::chosen_levels() const {
 }
 
 void NestedFilm::choose(const std::vector<uint32_t> &passes, std::span<float> pixels, size_t channels) const {
-    const std::vector<float> chosen = chosen_levels();
+    const std::vector<float> chosen = chosen_levels(passes);
     for (uint32_t y = 0; y < grid_.height; ++y) {
         for (uint32_t x = 0; x < grid_.width; ++x) {
             const Sums *sums = at(x, y);

@@ -41,7 +41,8 @@ class NestedFilm {
 
     /// Returns the place of every pixel's radius among the levels, as choose() reads it; that of the largest where no
     /// caustic is.
-    std::vector<float> chosen_levels() const;
+    /// @param passes for each tile the number of passes added
+    std::vector<float> chosen_levels(const std::vector<uint32_t> &passes) const;
 
     /// What is known of the error of a pixel's mean brightness.
     struct Error {
@@ -65,8 +66,8 @@ class NestedFilm {
     const Sums *at(uint32_t x, uint32_t y) const;
     template <typename Visit>
     void visit_around(uint32_t x, uint32_t y, const Visit &visit) const;
-    Float8 variance_around(uint32_t x, uint32_t y) const;
-    std::vector<float> agreeing_levels() const;
+    Float8 variance_around(uint32_t x, uint32_t y, const std::vector<uint32_t> &passes) const;
+    std::vector<float> agreeing_levels(const std::vector<uint32_t> &passes) const;
 
     size_t tile_of(uint32_t x, uint32_t y) const { return grid_.of_pixel(size_t{y} * grid_.width + x); }
 

@@ -26,6 +26,8 @@ double passes_needed(double camera, double photons, double blur, double error, b
     };
     double low = fewest, high = most;
     if (squared_error(low) <= error * error) return low;
+    // What is out of reach is the further out of it the more error is left.
+    if (squared_error(most) > error * error) return most * squared_error(most) / (error * error);
     constexpr int halvings = 24;
     for (int i = 0; i < halvings; ++i) {
         const double middle = std::sqrt(low * high);
@@ -34,26 +36,20 @@ double passes_needed(double camera, double photons, double blur, double error, b
     return high;
 }
 
-/// Steps of a factor: 2^(-range / steps) ... 2^(range / steps).
-std::vector<double> powers(int range, double steps, int last) {
-    std::vector<double> factors;
-    for (int i = -range; i <= last; ++i) factors.push_back(std::exp2(i / steps));
-    return factors;
-}
-
 }  // namespace
 
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
-        // Fewer would cost no less: a pass of a small picture has other things to do.
-        constexpr double fewest_photons = 1 << 14, most_photons = 1 << 23;
+        // Fewer would cost no less: a pass of a small picture has other things to do. 2^14 ... 2^23.
+        constexpr int fewest = 14, most = 23, steps = 2;
         std::vector<double> counts;
         if (map.count == 0) return std::vector<double>{0};
-        for (const double factor : powers(8, 2, 12))
-            counts.push_back(std::clamp(map.count * factor, fewest_photons, most_photons));
+        for (int i = fewest * steps; i <= most * steps; ++i)
+            counts.push_back(std::exp2(static_cast<double>(i) / steps));
         return counts;
     };
-    const std::vector<double> radii = noise.global.count > 0 ? powers(6, 4, 0) : std::vector<double>{1};
+    const std::vector<double> radii =
+        noise.global.count > 0 ? std::vector<double>{1, 0.84, 0.71, 0.59, 0.5, 0.42, 0.35} : std::vector<double>{1};
     Plan best;
     double best_cost = std::numeric_limits<double>::infinity();
     for (const double global : counts_of(noise.global))

@@ -124,6 +124,7 @@ float choose_caustic_radius(const Scene &scene, const Emission &emission, const 
     const float max_radius = scene.bounds().radius() / 8;
     const double k = pilot.stands_for(caustic_photons_in_kernel, 8);
     std::vector<float> radii = radii_around_photons(pilot.map, k, max_radius, cancel);
+    if (radii.empty()) return 0;
     const float by_density = scaled(median(radii), caustic_photons_in_kernel, pilot, k);
 
     std::vector<float> footprints;

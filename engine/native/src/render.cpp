@@ -104,14 +104,24 @@ void Render::render_pass(uint32_t index) {
     leave_out_what_is_done();
 }
 
-/// Tiles whose noise is far below what the whole picture may have add little to it, and cost as much as others.
+/// Tiles whose noise is far below what the whole picture may have add little to it, and cost as much as others. Light
+/// that seldom comes, such as a small caustic, may not have come to a tile yet: those around it must be as quiet.
 void Render::leave_out_what_is_done() {
-    constexpr uint32_t least_passes = 8;              // fewer do not know their own variance
+    constexpr uint32_t least_passes = 16;             // fewer do not know their own variance
     constexpr float done = 0.5f, too_blurred = 0.8f;  // of the target
     // Further passes are what takes blur away.
     if (!error_ || film_.passes() < least_passes || error_->blur() > too_blurred * settings_.stop_error) return;
-    for (size_t tile = 0; tile < left_out_.size(); ++tile)
-        if (error_->tile_noise(tile) < done * settings_.stop_error) left_out_[tile] = true;
+    const uint32_t columns = film_.tiles().columns(), rows = film_.tiles().rows();
+    const auto is_quiet = [&](uint32_t x, uint32_t y) {
+        return error_->tile_noise(size_t{y} * columns + x) < done * settings_.stop_error;
+    };
+    for (uint32_t y = 0; y < rows; ++y)
+        for (uint32_t x = 0; x < columns; ++x) {
+            bool is_done = true;
+            for (uint32_t v = std::max(y, 1u) - 1; v < std::min(y + 2, rows); ++v)
+                for (uint32_t u = std::max(x, 1u) - 1; u < std::min(x + 2, columns); ++u) is_done &= is_quiet(u, v);
+            if (is_done) left_out_[size_t{y} * columns + x] = true;
+        }
 }
 
 Render::Radii Render::radii_of_pass(uint32_t index) const {
@@ -215,8 +225,15 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     // Choose the kernels before the first pass.
     if (!first_radii_) {
         const Stopwatch watch(spent.seconds_trace);
-        choose_radii();
-        make_plan();
+        const PhotonCounts counts = counts_;
+        try {
+            choose_radii();
+            make_plan();
+        } catch (...) {  // a render that goes on after a cancel begins here again
+            counts_ = counts;
+            first_radii_.reset();
+            throw;
+        }
     }
     const Radii radii = radii_of_pass(index);
 

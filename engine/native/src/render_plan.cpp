@@ -80,7 +80,10 @@ PilotNoise Render::run_pilot_passes() {
     }
     if (first_radii_->caustic > 0) {
         ++maps;
-        if (is_nested()) noise.caustic.variance *= 2;  // the chosen radius has about as much blur as noise
+        if (is_nested()) {  // the chosen radii have about as much blur as noise
+            noise.caustic.variance *= 2;
+            noise.caustic.blur = 0;
+        }
         noise.caustic.count = static_cast<double>(counts_.caustic);
         noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
     }

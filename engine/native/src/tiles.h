@@ -15,7 +15,8 @@ struct Tiles {
     uint32_t width, height;  ///< of the picture in pixels
 
     uint32_t columns() const { return (width + side - 1) / side; }
-    size_t count() const { return size_t{columns()} * ((height + side - 1) / side); }
+    uint32_t rows() const { return (height + side - 1) / side; }
+    size_t count() const { return size_t{columns()} * rows(); }
     size_t of_pixel(size_t pixel) const { return pixel / width / side * columns() + pixel % width / side; }
 
     /// Calls visit(x, y, pixel) for the pixels of a tile, row by row.
