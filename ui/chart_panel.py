@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-import textwrap
-
 import bpy
 
 from ..engine import last_chart
 from ..engine.chart.outcome import TARGETS, Chart, choices
 from ..engine.chart.words import duration, percent
-from .panels import Panel, line_length
+from .panels import Panel, label
 
 
 class PHOTON_MAPS_PT_chart(Panel, bpy.types.Panel):
@@ -29,8 +27,7 @@ class PHOTON_MAPS_PT_chart(Panel, bpy.types.Panel):
         if chart is None:
             return
         for sentence in _sentences(chart):
-            for line in textwrap.wrap(sentence, line_length(context)):
-                column.label(text=line)
+            label(column, sentence, context)
 
 
 class PHOTON_MAPS_PT_chart_points(Panel, bpy.types.Panel):

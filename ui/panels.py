@@ -83,8 +83,7 @@ class PHOTON_MAPS_PT_photons(Panel, bpy.types.Panel):
         cone.prop(settings, "cone_k")
         by_hand.prop(settings, "brdf_direction")
         for sentence in last_render.recall(context.scene.session_uid, context.view_layer.name).maps:
-            for line in textwrap.wrap(sentence, line_length(context)):
-                column.label(text=line)
+            label(column, sentence, context)
 
 
 class PHOTON_MAPS_PT_parts(Panel, bpy.types.Panel):
@@ -163,15 +162,15 @@ class PHOTON_MAPS_PT_messages(Panel, bpy.types.Panel):
             box = column.box().column(align=True)
             box.label(text=message.object, icon="INFO")
             times = f" ({message.count} times)" if message.count > 1 else ""
-            for line in textwrap.wrap(f"{message.text}{times} {message.advice}", line_length(context)):
-                box.label(text=line)
+            label(box, f"{message.text}{times} {message.advice}", context)
 
 
-def line_length(context: bpy.types.Context) -> int:
-    """Return how many letters fit the region's width; Blender's labels do not wrap."""
+def label(layout: bpy.types.UILayout, text: str, context: bpy.types.Context) -> None:
+    """Show a text in lines of the region's width; Blender's own labels do not wrap."""
     letter_width = 7.5 * (context.preferences.system.ui_scale or 1.0)  # 0 without a window
     region_width = context.region.width if context.region else 300
-    return max(20, int((region_width - 60) / letter_width))
+    for line in textwrap.wrap(text, max(20, int((region_width - 60) / letter_width))):
+        layout.label(text=line)
 
 
 class PHOTON_MAPS_PT_passes(Panel, bpy.types.Panel):

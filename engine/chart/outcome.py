@@ -74,8 +74,10 @@ class Chart:
         return None if passes is None else self.after(row, passes)
 
     def now(self) -> Prediction | None:
-        """Return what the present settings come to with their own number of passes; None if time is their stop."""
+        """Return what the present settings come to with their own passes or error; None if time is their stop."""
         settings, row = self.present, self.rows[0]
+        if settings.stop == Stop.ERROR:
+            return self.until(row, settings.error_target)
         return self.after(row, settings.passes) if row.curve and settings.stop == Stop.PASSES else None
 
     def knee(self) -> Prediction | None:
