@@ -9,7 +9,7 @@ namespace photon_maps {
 
 namespace {
 
-constexpr uint32_t pilot_pixels = 1024;
+constexpr uint32_t watched_pixels = 1024;
 
 /// Means over the first passes of the squared radius, and of its inverse, over that of the first: by the gamma function
 /// r^2 goes as (pass + 1)^(-1/3) / gamma(5/3) (Knaus and Zwicker 2011, equation 21 with alpha = 2/3).
@@ -76,7 +76,7 @@ Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
 
 PilotPixels::PilotPixels(const Camera &camera) {
     const uint64_t all = uint64_t{camera.frame_width} * camera.frame_height;
-    const auto count = static_cast<uint32_t>(std::min<uint64_t>(pilot_pixels, all));
+    const auto count = static_cast<uint32_t>(std::min<uint64_t>(watched_pixels, all));
     for (uint32_t i = 0; i < count; ++i) {
         const auto u = sobol4(i, 0);
         pixels_.push_back({static_cast<uint32_t>(u[0] * static_cast<float>(camera.frame_width)),
