@@ -14,7 +14,7 @@ from PIL import Image
 
 from benchmarks.chart.analysis import TARGETS, Certainty, Crossing, Curve, pareto_front, slope
 from benchmarks.chart.methods import DEFAULT, METHODS
-from benchmarks.chart.rivals import RIVALS
+from benchmarks.chart.rivals import FOREMOST
 from benchmarks.chart.scenes import SCENES
 
 pyplot.switch_backend("Agg")  # without a display
@@ -49,7 +49,6 @@ STYLES = {
 #: The others, in their order: thin lines.
 OTHERS = [Style(color, line, ".", 1.0) for line in ("-", "--") for color in ("0.45", "0.7", "tab:brown", "tab:pink",
                                                                               "tab:olive", "tab:cyan")]  # fmt: skip
-FOREMOST = (DEFAULT.name, "path tracing", *RIVALS)  #: what the summary compares
 
 
 def style_of(method: str) -> Style:

@@ -10,9 +10,8 @@ from pathlib import Path
 
 from benchmarks.chart.analysis import TARGETS, Crossing, Curve, price, time_to
 from benchmarks.chart.errors import Row
-from benchmarks.chart.figures import FOREMOST
 from benchmarks.chart.methods import DEFAULT, METHODS
-from benchmarks.chart.rivals import RIVALS
+from benchmarks.chart.rivals import FOREMOST, RIVALS
 from benchmarks.chart.scenes import SCENES
 
 Table = Sequence[Mapping[str, str]]

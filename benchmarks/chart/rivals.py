@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.chart.errors import Row, row_of
-from benchmarks.chart.methods import MAIN_SECONDS
+from benchmarks.chart.methods import DEFAULT, MAIN_SECONDS
 from benchmarks.chart.scenes import Scene
 from tests.reference_scenes import Glass
 
@@ -103,3 +103,6 @@ RIVALS = {
         Rival("LuxCore, bidirectional", "luxcore", "pyluxcore", _is_plain),
     )
 }
+
+#: What the summary compares.
+FOREMOST = (DEFAULT.name, "path tracing", *RIVALS)
