@@ -154,7 +154,7 @@ typedef struct pm_statistics {
     double seconds_trace; /* wall time by phase */
     double seconds_build;
     double seconds_gather;
-    float error; /* estimated relative error of the picture, hypot(noise, blur); infinite without PM_PASS_ERROR and
+    float error; /* estimated relative error of the picture, noise and blur together; infinite without PM_PASS_ERROR and
                     before the second pass */
     float noise; /* part of it that varies from pass to pass */
     float blur;  /* part of it by the width of the kernels */

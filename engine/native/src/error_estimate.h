@@ -29,7 +29,7 @@ class ErrorEstimate {
     float noise() const { return noise_; }
     /// Relative error by the width of the kernels, which no further pass of the same radius would take away.
     float blur() const { return blur_; }
-    float error() const { return std::hypot(noise(), blur()); }
+    float error() const { return std::sqrt(noise() * noise() + blur() * blur()); }
 
     /// Relative standard error of a tile: the root mean square over its pixels.
     float tile_noise(size_t tile) const { return std::sqrt(std::max(tile_squares_[tile], 0.0f)); }
