@@ -17,8 +17,8 @@ from photon_maps_native import SceneData
 
 from .export.scene import read_scene
 from .messages import Messages
-from .properties import render_settings
 from .settings import RenderSettings
+from .user_settings import render_settings
 
 SLOT = "Speed vs Accuracy"  #: the render slot that takes what Blender makes of it
 NO_CAMERA = "The scene has no camera. Add one and make it the active camera."

@@ -16,11 +16,13 @@ from . import last_render
 from .map_choice import explain_maps
 from .messages import Messages
 from .passes import PASSES, PassInfo
-from .properties import render_settings
-from .settings import Stop
+from .settings import RenderSettings, Stop
 from .summary import Summary, summarize
+from .user_settings import render_settings
 
 if TYPE_CHECKING:
+    from photon_maps_native import Statistics
+
     from .session import Session
 
 POLL_SECONDS = 0.02  #: between two looks at Esc
@@ -93,18 +95,24 @@ def _render_layer(
         engine.update_stats("", " ".join(maps))
         if statistics.passes == 0:
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
-        if settings.stop == Stop.ERROR and session.progress >= 1.0 and not statistics.error <= settings.error_target:
-            messages.add(
-                depsgraph.scene.name,
-                f"stopped at an estimated error of {statistics.error:.2%}, for more passes would not lower it.",
-                f"Raise the Error, or switch on Shrinking Radius; {settings.error_target:.2%} was asked for.",
-            )
+        if settings.stop == Stop.ERROR and session.progress >= 1.0:
+            _say_what_was_missed(depsgraph.scene.name, settings, statistics, messages)
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
         picture.show(session, summary)
     if bpy.app.background:
         sys.stdout.write(summary.line() + "\n")
         sys.stdout.flush()
     return maps
+
+
+def _say_what_was_missed(scene: str, settings: RenderSettings, statistics: Statistics, messages: Messages) -> None:
+    if statistics.error <= settings.error_target:
+        return
+    messages.add(
+        scene,
+        f"stopped at an estimated error of {statistics.error:.2%}, for more passes would not lower it.",
+        f"Raise the Error, or switch on Shrinking Radius; {settings.error_target:.2%} was asked for.",
+    )
 
 
 class _Picture:

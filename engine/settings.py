@@ -76,7 +76,7 @@ class RenderSettings:
     """Settings of one render; zero photon_count or radius leaves the choice to the engine."""
 
     integrator: Integrator = Integrator.PHOTON_MAP
-    photon_count: int = 0  #: emitted per pass; 0: chosen from the pixels
+    photon_count: int = 0  #: emitted per pass; 0: chosen
     radius: float = 0.0  #: of the first pass, scene units; 0: chosen from the photons' density
     estimate: Estimate = Estimate.RADIUS
     nearest_count: int = 100  #: photons of the nearest estimate

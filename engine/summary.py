@@ -47,7 +47,7 @@ class Summary:
 
 
 def plan_of(statistics: Statistics) -> dict[str, float]:
-    """Return what a render chose, or was told; a function of scene and settings, the same wherever it is rendered."""
+    """Return what a render chose, or was told; its radii are those of the first pass that was rendered here."""
     return {
         "photon_count": statistics.photon_count if statistics.radius_first > 0 else 0,
         "caustic_photon_count": statistics.caustic_photon_count if statistics.caustic_radius_first > 0 else 0,

@@ -10,8 +10,8 @@ import bpy
 from bpy.props import FloatProperty, IntProperty
 
 from ..engine import last_chart
-from ..engine.properties import apply_settings
 from ..engine.render_engine import PhotonMapsEngine
+from ..engine.user_settings import apply_settings
 
 if TYPE_CHECKING:
     import numpy as np

@@ -29,6 +29,7 @@ FLOORS = {
     "engine/session": 1,
     "engine/summary": 1,
     "engine/properties": 1,
+    "engine/user_settings": 1,
     "engine/property_items": 1,
     "engine/export": 2,
     "engine": 3,

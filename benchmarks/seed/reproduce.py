@@ -22,7 +22,7 @@ from photon_maps_native import SceneData
 from benchmarks.seed import blender_scene, draw, report_recipe
 from benchmarks.seed.scene import PHOTONS, recipe_scene
 from benchmarks.seed.tables import Figure, Reference, Row, row_of, write_tables
-from engine import properties, render_engine
+from engine import properties, render_engine, user_settings
 from engine.export.scene import read_scene
 from engine.messages import Messages
 from engine.passes import Pass
@@ -85,7 +85,7 @@ def blender_data() -> tuple[SceneData, RenderSettings]:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     messages = Messages()
     data = read_scene(depsgraph, built.camera.evaluated_get(depsgraph), messages)
-    settings = properties.render_settings(built)
+    settings = user_settings.render_settings(built)
     if data is None or list(messages):
         raise RuntimeError(f"The scene was not read as it is: {[str(message) for message in messages]}")
     render_engine.unregister()

@@ -96,12 +96,8 @@ class ChartJob:
             full = self._render_full(scene, time.process_time() - cpu_started)
             self.phase = "Reference"
             small = Size(_pixels(camera), min(full.size.photon_count, MOST_PHOTONS), 0.0)
-            halves = [
-                stack.enter_context(
-                    Session(scene, reference_settings(self._base, full.size, small, half), camera=camera)
-                )
-                for half in (0, 1)
-            ]
+            asked = [reference_settings(self._base, full.size, small, half) for half in (0, 1)]
+            halves = [stack.enter_context(Session(scene, settings, camera=camera)) for settings in asked]
             reference = self._render_reference(halves)
             self.phase = "Variants"
             ladder, runs = self._render_ladder(stack, scene, camera, (full.size, small), reference, halves[0])

@@ -41,9 +41,8 @@ class Variant:
 
     def settings(self, base: RenderSettings, size: Size) -> RenderSettings:
         """Return the settings at the picture's full size; what differs from what Automatic chooses is set by hand."""
-        if base.use_auto and (
-            self.photons != 1.0 or self.radius is not None or not set(self.fields) <= KEPT_BY_AUTOMATIC
-        ):
+        is_kept = self.photons == 1.0 and self.radius is None and set(self.fields) <= KEPT_BY_AUTOMATIC
+        if base.use_auto and not is_kept:
             base = replace(base, use_auto=False, photon_count=size.photon_count, radius=size.radius)
         return replace(
             base,
@@ -182,8 +181,7 @@ def reference_settings(base: RenderSettings, full: Size, size: Size, half: int) 
 
     Where the radius is the engine's choice, four times the photons make it half, so that a quarter of the blur is left.
     """
-    return replace(
-        RenderSettings(),
+    return RenderSettings(
         photon_count=4 * size.photon_count,
         radius=small_radius(base, full, size) / 2 if base.use_auto else 0.0,
         max_bounces=base.max_bounces,

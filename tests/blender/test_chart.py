@@ -78,7 +78,7 @@ def test_a_point_is_taken_over(corner, extension, charted):
     def take(name):
         index = next(i for i, choice in enumerate(points) if choice.row.variant.name == name)
         assert bpy.ops.photon_maps.use_chart_point(index=index) == {"FINISHED"}
-        made = extension.engine.properties.render_settings(corner)
+        made = extension.engine.user_settings.render_settings(corner)
         assert (made.stop.name, made.passes) == ("PASSES", points[index].point.passes)
         return made
 

@@ -93,7 +93,7 @@ def test_every_tooltip_speaks_of_cost(extension, group):
 
 
 def test_automatic_leaves_the_choice_to_the_engine(scene, extension):
-    make, settings = extension.engine.properties.render_settings, scene.photon_maps
+    make, settings = extension.engine.user_settings.render_settings, scene.photon_maps
     filters = extension.engine.settings.Filter
     settings.photon_count, settings.radius, settings.filter, settings.cone_k = 1000, 0.25, "CONE", 2.0
     automatic = make(scene)
@@ -105,7 +105,7 @@ def test_automatic_leaves_the_choice_to_the_engine(scene, extension):
 
 def test_parts_of_the_method_are_chosen_by_hand(scene, extension):
     """Choices are numbered as in the engine, and reach a render only when Automatic is off."""
-    make, settings, kinds = extension.engine.properties.render_settings, scene.photon_maps, extension.engine.settings
+    make, settings, kinds = extension.engine.user_settings.render_settings, scene.photon_maps, extension.engine.settings
     enumerations = {"integrator": kinds.Integrator, "estimate": kinds.Estimate, "brdf_direction": kinds.BrdfDirection}
     for name, members in enumerations.items():
         items = settings.bl_rna.properties[name].enum_items
@@ -131,7 +131,7 @@ def test_parts_of_the_method_are_chosen_by_hand(scene, extension):
 
 
 def test_qualities_are_error_targets(scene, extension):
-    make, settings = extension.engine.properties.render_settings, scene.photon_maps
+    make, settings = extension.engine.user_settings.render_settings, scene.photon_maps
     settings.property_unset("stop")
     assert (make(scene).stop.name, settings.quality) == ("ERROR", "NORMAL")
     for quality, error in (("DRAFT", 0.05), ("NORMAL", 0.02), ("FINAL", 0.01)):
@@ -142,7 +142,7 @@ def test_qualities_are_error_targets(scene, extension):
 
 
 def test_threads_and_stop_are_blenders(scene, extension):
-    make = extension.engine.properties.render_settings
+    make = extension.engine.user_settings.render_settings
     scene.render.threads_mode, scene.render.threads = "FIXED", 3
     scene.photon_maps.stop, scene.photon_maps.time_limit = "TIME", 0.25
     made = make(scene)

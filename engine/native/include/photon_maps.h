@@ -159,11 +159,12 @@ typedef struct pm_statistics {
     float noise; /* part of it that varies from pass to pass */
     float blur;  /* part of it by the width of the kernels */
     uint64_t caustic_photon_count; /* emitted per pass for the caustic map, as chosen */
-    float
-        pilot_camera_noise; /* relative standard deviation of a pass, as pilot passes saw it: of what photons do not */
-    float pilot_global_noise;  /* carry, and of what those of either map do with so many as a pass emits; 0 without */
-    float pilot_caustic_noise; /* use_auto */
-    float done;                /* share of the picture that gets no further samples */
+    /* Relative standard deviation of a pass as pilot passes saw it, by what photons do not carry and by those of either
+     * map, as many as a pass emits; 0 without use_auto. */
+    float pilot_camera_noise;
+    float pilot_global_noise;
+    float pilot_caustic_noise;
+    float done; /* share of the picture that gets no further samples */
 } pm_statistics;
 
 typedef struct pm_photon {

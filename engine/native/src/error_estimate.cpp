@@ -6,6 +6,7 @@ namespace photon_maps {
 namespace {
 
 constexpr double probe_count = 4096;
+
 /// By how much the mean of n passes varies more than it would if its variance went on as at n = doubling <= n, a power
 /// of two, by half for each doubling: it is the mean of stretches of the low-discrepancy sequence whose lengths are
 /// powers of two, the longer the more evenly spread.
@@ -86,13 +87,13 @@ void ErrorEstimate::estimate_noise(const Film &film) {
 /// V(n / 2) - V(n) = V(n) (1 - rho) / rho.
 void ErrorEstimate::compare_halves(const Film &film) {
     std::vector<float> halves, independent;
-    const float half = static_cast<float>(passes_) / 2;
+    const auto passes = static_cast<float>(passes_);
     for (size_t tile = 0; tile < tiles_.count(); ++tile) {
         if (film.passes_of(tile) != passes_) continue;
         tiles_.visit(tile, [&](uint32_t, uint32_t, size_t pixel) {
             const Vec3 total = film.sum(pixel), first = half_[pixel];
-            const Vec3 difference = (total - first * 2) / (2 * half);
-            halves.push_back(relative(difference * difference, total / (2 * half)));
+            const Vec3 difference = (total - first * 2) / passes;
+            halves.push_back(relative(difference * difference, total / passes));
             independent.push_back(pixel_squares_[pixel]);
         });
     }

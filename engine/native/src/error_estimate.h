@@ -8,9 +8,8 @@
 
 namespace photon_maps {
 
-/// Follows a picture pass by pass. Errors are relative to the radiance of a pixel and channel, or to the picture's mean
-/// where that is more, and are root mean squares over channels and pixels, the worst thousandth left
-/// out.
+/// Follows a picture pass by pass. Errors are relative (relative_error.h), and root mean squares over channels and
+/// pixels, the worst thousandth left out.
 class ErrorEstimate {
   public:
     ErrorEstimate(uint32_t width, uint32_t height);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plan.h"
 
-#include "camera_path.h"
 #include "parallel.h"
 #include "relative_error.h"
+#include "sequence.h"
 
 namespace photon_maps {
 
@@ -79,13 +79,9 @@ PilotPixels::PilotPixels(const Camera &camera) {
     const auto count = static_cast<uint32_t>(std::min<uint64_t>(watched_pixels, all));
     for (uint32_t i = 0; i < count; ++i) {
         const auto u = sobol4(i, 0);
-        pixels_.push_back({static_cast<uint32_t>(u[0] * static_cast<float>(camera.frame_width)),
-                           static_cast<uint32_t>(u[1] * static_cast<float>(camera.frame_height)),
-                           {},
-                           {},
-                           {},
-                           {},
-                           {}});
+        Pixel &pixel = pixels_.emplace_back();
+        pixel.x = static_cast<uint32_t>(u[0] * static_cast<float>(camera.frame_width));
+        pixel.y = static_cast<uint32_t>(u[1] * static_cast<float>(camera.frame_height));
     }
 }
 

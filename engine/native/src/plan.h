@@ -4,7 +4,6 @@
 // settings alone: costs are counted in rays, not measured by a clock.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <vector>
 

@@ -22,7 +22,7 @@ float trimmed_mean(std::vector<float> &values, size_t share = 1000);
 /// hundredth is left out: how bright lamps and skies are has nothing to do with what else is to be seen.
 float squared_floor(std::span<const Vec3> means);
 
-/// Mean over the channels of squares over the squared radiance that they are errors of.
+/// Mean over the channels of squares over the squared radiance that they are errors of and the floor together.
 /// @param floor of squared_floor()
 float relative_square(Vec3 square, Vec3 mean, float floor);
 

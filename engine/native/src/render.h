@@ -16,7 +16,7 @@ namespace photon_maps {
 
 struct RenderSettings {
     Integrator integrator;
-    uint64_t photon_count;   ///< per pass and map; 0: as many as the frame has pixels, within bounds
+    uint64_t photon_count;   ///< per pass and map; 0: planned, or as many as the frame has pixels, within bounds
     Kernel kernel;           ///< of the first pass; radius 0: chosen from pilot photons, for each map its own
     uint32_t nearest_count;  ///< of the photons around a point, within the kernel's radius; 0: all within it
     bool is_nested;          ///< caustics by nested radii, of which the film chooses
@@ -68,7 +68,7 @@ class Render {
     const RenderStatistics &statistics() const { return statistics_; }
     bool keeps_photons() const { return settings_.keep_photons; }
     PhotonCounts photon_counts() const { return counts_; }
-    /// What the plan was made from, and how wide its kernels are; nothing before the first pass or without a plan.
+    /// What the plan was made from; zero before the first pass or without a plan.
     const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
     /// Photons of the last finished pass, if they are kept.
