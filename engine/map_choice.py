@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .settings import Integrator, RenderSettings
+from .settings import Indirect, Integrator, RenderSettings
 
 if TYPE_CHECKING:
     from photon_maps_native import Statistics
@@ -34,6 +34,8 @@ def _explain_global(settings: RenderSettings, statistics: Statistics) -> str:
         return f"Global map: {statistics.photon_count:,} photons a pass, {radii}."
     if not settings.use_indirect:
         return "No global map: Indirect Light is off."
+    if statistics.indirect == Indirect.PATHS:
+        return "No global map: to the wanted error paths need fewer rays here than photons."
     return "No global map: no light comes from one diffuse surface to another."
 
 

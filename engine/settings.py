@@ -26,6 +26,14 @@ class Estimate(enum.IntEnum):
     ADAPTIVE = 2
 
 
+class Indirect(enum.IntEnum):
+    """What brings the light of diffuse bounces to what the eye sees, numbered as in photon_maps.h."""
+
+    PHOTONS = 0
+    GATHER = 1
+    PATHS = 2
+
+
 class BrdfDirection(enum.IntEnum):
     """By which direction surfaces scatter photons, numbered as in photon_maps.h and in saved files."""
 

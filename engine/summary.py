@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .map_choice import maps_built
 from .messages import Messages
+from .settings import Indirect
 
 if TYPE_CHECKING:
     from photon_maps_native import Statistics
@@ -33,7 +34,7 @@ class Summary:
     radius_last: float
     peak_memory_bytes: int
     error_estimate: float | None  #: relative; None before the second pass
-    plan: dict[str, float]  #: what the passes are made of: photons emitted for each map, first radii, pilot noise
+    plan: dict[str, float | str]  #: what passes are made of: photons emitted for each map, first radii, pilot noise
     maps: list[str]
     messages: list[str]
 
@@ -46,9 +47,10 @@ class Summary:
         return {f"photon_maps.{name}": json.dumps(value) for name, value in asdict(self).items()}
 
 
-def plan_of(statistics: Statistics) -> dict[str, float]:
+def plan_of(statistics: Statistics) -> dict[str, float | str]:
     """Return what a render chose, or was told; its radii are those of the first pass that was rendered here."""
     return {
+        "indirect": Indirect(statistics.indirect).name,
         "photon_count": statistics.photon_count if statistics.radius_first > 0 else 0,
         "caustic_photon_count": statistics.caustic_photon_count if statistics.caustic_radius_first > 0 else 0,
         "radius": statistics.radius_first,

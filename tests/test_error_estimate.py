@@ -80,7 +80,7 @@ def test_what_is_done_gets_no_more_samples() -> None:
     assert 0.2 < statistics.done < 1.0
     whole = Picture(large_still_life(), box_filtered(), BUFFERS).run(statistics.passes)
     undisturbed = whole.render.statistics()
-    assert undisturbed.done == 0.0 and undisturbed.shadow_rays > statistics.shadow_rays
+    assert undisturbed.done == 0.0 and undisturbed.rays > statistics.rays
     same = (whole.render.read(Pass.COMBINED, 4) == stopped).all(-1)
     assert 0.05 < same.mean() < 1.0
     np.testing.assert_allclose(stopped.mean(), whole.render.read(Pass.COMBINED, 4).mean(), rtol=target)

@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 4 };
+enum { PM_ABI_VERSION = 5 };
 
 typedef enum pm_status {
     PM_OK = 0,
@@ -59,6 +59,13 @@ typedef enum pm_estimate {
 
 /* By which direction a surface that is not Lambertian scatters photons. */
 typedef enum pm_brdf_direction { PM_BRDF_PER_PHOTON = 0, PM_BRDF_MEAN = 1 } pm_brdf_direction;
+
+/* What brings the light of diffuse bounces to what the eye sees. */
+typedef enum pm_indirect {
+    PM_INDIRECT_PHOTONS = 0, /* the global map */
+    PM_INDIRECT_GATHER = 1,  /* a final gather: rays, which ask the global map where they end */
+    PM_INDIRECT_PATHS = 2    /* rays that go on as in path tracing; caustics are still the photons' */
+} pm_indirect;
 
 typedef enum pm_filter {
     PM_FILTER_NONE = 0,
@@ -144,7 +151,7 @@ typedef struct pm_statistics {
     float caustic_radius_first;
     float caustic_radius_last;
     uint32_t caster_count; /* objects that can focus light; 0: no caustic photon is traced */
-    uint32_t reserved;
+    uint32_t indirect;     /* pm_indirect: as set, or with use_auto as chosen */
     uint64_t shadow_rays;        /* traced by the camera's paths */
     uint64_t spared_shadow_rays; /* whose answer shadow photons knew */
     double emitted[3];           /* W, mean over the passes: emitted = absorbed + escaped + cut */

@@ -240,6 +240,7 @@ class Statistics:
     caustic_radius_first: float
     caustic_radius_last: float
     caster_count: int
+    indirect: int  #: pm_indirect: what brings the light of diffuse bounces, as set or chosen
     shadow_rays: int  #: traced by the camera's paths
     spared_shadow_rays: int  #: whose answer shadow photons knew
     emitted: Color

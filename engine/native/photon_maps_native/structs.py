@@ -206,7 +206,7 @@ class PmStatistics(SizedStructure):
         ("caustic_radius_first", c_float),
         ("caustic_radius_last", c_float),
         ("caster_count", c_uint32),
-        ("reserved", c_uint32),
+        ("indirect", c_uint32),
         ("shadow_rays", c_uint64),
         ("spared_shadow_rays", c_uint64),
         ("emitted", c_double * 3),

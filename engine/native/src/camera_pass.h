@@ -17,6 +17,13 @@ namespace photon_maps {
 
 enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1, regular_shading = 2 };
 
+/// What brings the light of diffuse bounces to what the eye sees.
+enum class Indirect : uint32_t {
+    photons,  ///< the global map
+    gather,   ///< a final gather: rays, which ask the global map where they end
+    paths     ///< rays that go on as in path tracing; caustics are still photons'
+};
+
 /// The photon maps of a pass; either may be empty. The words are those of camera_path.h.
 struct PhotonMaps {
     PhotonGather global;  ///< L (S|D)* D S* D; for a final gather L D too
@@ -32,7 +39,7 @@ struct CameraPass {
     const PhotonMaps *maps;               ///< null without photons
     const PhotonImportance *importance;   ///< null: rays go on by the closures alone
     const ShadowPhotons *shadow_photons;  ///< null: all shadow rays are traced
-    bool use_final_gather;
+    Indirect indirect;
     uint32_t max_bounces;
     uint32_t seed;
     uint32_t index;  ///< of the pass

@@ -107,7 +107,7 @@ void CameraPath::gather(const SurfacePoint &hit, const Shading &shading) {
         add_caustic_levels(hit, shading);
     else
         add_photons(pass_.maps->caustic, hit, shading, glossy_lobes);
-    if (!pass_.use_final_gather) add_photons(pass_.maps->global, hit, shading, diffuse_lobes);
+    if (pass_.indirect == Indirect::photons) add_photons(pass_.maps->global, hit, shading, diffuse_lobes);
 }
 
 /// All the light of a surface that a final gather met.

@@ -116,7 +116,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.max_bounces = source.max_bounces;
     settings.use_caustics = source.use_caustics != 0;
     settings.use_indirect = source.use_indirect != 0;
-    settings.use_final_gather = source.use_final_gather != 0;
+    settings.use_final_gather = source.use_final_gather != 0 && settings.use_indirect;
     settings.use_shadow_photons = source.use_shadow_photons != 0;
     settings.use_photon_guiding = source.use_photon_guiding != 0;
     settings.seed = source.seed;

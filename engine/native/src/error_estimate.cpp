@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "error_estimate.h"
 
+#include <bit>
+
 namespace photon_maps {
 
 namespace {
@@ -22,6 +24,12 @@ float between_doublings(uint32_t n, uint32_t doubling, float decay) {
 }
 
 bool is_power_of_two(uint32_t n) { return (n & (n - 1)) == 0; }
+
+/// Errors fall slowly: to look at all pixels after one pass of eight is enough, once there are many.
+bool is_time_to_look(uint32_t passes) {
+    constexpr uint32_t looks_between_doublings = 8;
+    return passes > 1 && passes % std::max(std::bit_floor(passes) / looks_between_doublings, 1u) == 0;
+}
 
 }  // namespace
 
@@ -53,7 +61,7 @@ void ErrorEstimate::add(const Film &film, const Film &pass, const std::vector<bo
 
     // What all passes tell.
     ++passes_;
-    if (passes_ > 1) {
+    if (is_time_to_look(passes_)) {
         find_floor(film);
         estimate_noise(film);
         if (is_power_of_two(passes_)) compare_halves(film);

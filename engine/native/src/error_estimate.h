@@ -24,7 +24,8 @@ class ErrorEstimate {
     /// @param left_out the tiles that it lacks
     void add(const Film &film, const Film &pass, const std::vector<bool> &left_out);
 
-    /// Relative standard error of the picture; infinite before the second pass, as nothing is known then.
+    /// Relative standard error of the picture; infinite before the second pass, as nothing is known then. Like all
+    /// that follows it is up to date after 2 to 16 passes, and then behind by an eighth of the passes at most.
     float noise() const { return noise_; }
     /// Relative error by the width of the kernels, which no further pass of the same radius would take away.
     float blur() const { return blur_; }

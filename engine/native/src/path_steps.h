@@ -68,15 +68,15 @@ class CameraPath {
     /// Whether a final gather ends here, where the eye sees no detail: all light is asked of the photons. A ray shorter
     /// than their radius goes on, for it would show how they are blurred (Jensen 1996, section 5).
     bool ends_final_gather() const {
-        return pass_.maps && word_.diffuse > 0 &&
+        return pass_.maps && pass_.indirect == Indirect::gather && word_.diffuse > 0 &&
                (word_.ends_glossy || state_.length >= pass_.maps->global.kernel.radius);
     }
     bool goes_on_diffusely() const {
         if (pass_.integrator != Integrator::photon_map) return pass_.integrator == Integrator::path_tracing;
-        return pass_.use_final_gather && !ends_final_gather();
+        return pass_.indirect != Indirect::photons && !ends_final_gather();
     }
     /// Whether a ray of its own looks for emissive surfaces, since none goes on diffusely to meet them.
-    bool asks_emitters() const { return pass_.maps && !pass_.use_final_gather; }
+    bool asks_emitters() const { return pass_.maps && pass_.indirect == Indirect::photons; }
     bool asks_every_source() const { return word_.diffuse == 0 && pass_.lights.source_count() <= few_sources; }
     /// Weight of light that the current ray meets, against light sampling at its origin.
     float weight(size_t source, float light_pdf) const {

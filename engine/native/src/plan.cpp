@@ -17,12 +17,12 @@ double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.
 double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
 
 /// Passes until the error is small enough.
-double passes_needed(double camera, double photons, double blur, double error, bool shrinks) {
+double passes_needed(double camera, double photons, double blur, double lack, double error, bool shrinks) {
     constexpr double fewest = 4, most = 1 << 16;
     const auto squared_error = [&](double passes) {
         const double shrunk = shrinks ? mean_squared_radius(passes) : 1;
         const double inverse = shrinks ? mean_inverse_squared_radius(passes) : 1;
-        return (camera + photons * inverse) / passes + blur * shrunk * shrunk;
+        return (camera + photons * inverse) / passes + blur * shrunk * shrunk + lack;
     };
     double low = fewest, high = most;
     if (squared_error(low) <= error * error) return low;
@@ -41,7 +41,7 @@ double passes_needed(double camera, double photons, double blur, double error, b
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
         // Fewer would cost no less: a pass of a small picture has other things to do. 2^14 ... 2^23.
-        constexpr int fewest = 14, most = 23, steps = 2;
+        constexpr int fewest = 10, most = 23, steps = 2;
         std::vector<double> counts;
         if (map.count == 0) return std::vector<double>{0};
         for (int i = fewest * steps; i <= most * steps; ++i)
@@ -66,10 +66,11 @@ Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
                     photons += noise.caustic.variance * noise.caustic.count / caustic;
                     cost += caustic * noise.caustic.cost;
                 }
-                cost *= passes_needed(noise.camera_variance, photons, blur, error, shrinks);
+                cost *= passes_needed(noise.camera_variance, photons, blur, noise.lack, error, shrinks);
                 if (cost >= best_cost) continue;
                 best_cost = cost;
-                best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)}, static_cast<float>(radius)};
+                best = {
+                    {static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)}, static_cast<float>(radius), cost};
             }
     return best;
 }
@@ -91,6 +92,7 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
     parallel_for(pass.threads, pixels_.size(), cancel, [&](size_t i) {
         Pixel &pixel = pixels_[i];
         const PixelSample sample = render_pixel(pass, pixel.x, pixel.y, true, counts[i], nullptr);
+        pixel.radiance[added_] = sample.radiance();
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
         pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
@@ -102,9 +104,8 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
 }
 
 void PilotPixels::find_noise(PilotNoise &noise) const {
-    std::vector<Vec3> means;
+    const std::vector<Vec3> means = this->means();
     constexpr auto count = static_cast<float>(passes);
-    for (const Pixel &p : pixels_) means.push_back((p.camera.sum + p.global.sum + p.caustic.sum) / count);
     const float floor = squared_floor(means);
     const auto mean_over_pixels = [&](auto square) {
         std::vector<float> squares;
@@ -129,6 +130,34 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
     noise.caustic.variance = variance(&Pixel::caustic);
     noise.global.blur = blur(&Pixel::global_blur);
     noise.caustic.blur = blur(&Pixel::caustic_blur);
+}
+
+std::vector<Vec3> PilotPixels::means() const {
+    std::vector<Vec3> means;
+    for (const Pixel &p : pixels_)
+        means.push_back((p.camera.sum + p.global.sum + p.caustic.sum) / static_cast<float>(passes));
+    return means;
+}
+
+double PilotPixels::squared_lack(const PilotPixels &other) const {
+    const std::vector<Vec3> means = other.means();
+    const float floor = squared_floor(means);
+    double sum = 0, squares = 0;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        double of_pass = 0;
+        for (size_t i = 0; i < pixels_.size(); ++i) {
+            const float difference = average(other.pixels_[i].radiance[pass] - pixels_[i].radiance[pass]);
+            const float square = difference * difference;
+            of_pass += std::copysign(std::sqrt(relative_square({square, square, square}, means[i], floor)), difference);
+        }
+        of_pass /= static_cast<double>(pixels_.size());
+        sum += of_pass;
+        squares += of_pass * of_pass;
+    }
+    // Pixels share their photons: only passes are independent. Student's t for four of them, 95 %.
+    constexpr double t = 3.18;
+    const double mean = sum / passes, variance = (squares / passes - mean * mean) / (passes - 1);
+    return mean > 0 ? std::max(0.0, mean * mean - t * t * variance) : 0;
 }
 
 }  // namespace photon_maps

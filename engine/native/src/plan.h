@@ -4,6 +4,7 @@
 // settings alone: costs are counted in rays, not measured by a clock.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <vector>
 
@@ -33,13 +34,20 @@ struct MapNoise {
 struct PilotNoise {
     double camera_variance = 0;  ///< of all that photons do not carry
     MapNoise global, caustic;
+    double lack = 0;         ///< relative square of the light that is missing in all pilot passes
     double pixel_cost = 0;   ///< of the camera's path and its estimates, in rays, times the pixels
     double gather_cost = 0;  ///< of the photons in the kernels of a whole pass, in rays
+};
+
+/// By what brings the light of diffuse bounces.
+struct PilotNoises {
+    PilotNoise photons, paths;
 };
 
 struct Plan {
     PhotonCounts counts;
     float global_radius = 1;  ///< over that of the pilot passes
+    double cost = 0;          ///< in rays, until the picture has its error
 };
 
 /// Chooses what comes to an error in the least time. The variance of a map falls with its photons and with the square
@@ -64,6 +72,9 @@ class PilotPixels {
     double rays_per_pixel() const { return static_cast<double>(rays_) / static_cast<double>(pixels_.size() * passes); }
     /// Sets the variances and the blur that the passes tell, once all are added.
     void find_noise(PilotNoise &noise) const;
+    /// Relative square of the light that the pixels lack on average but others have, as far as noise cannot be the
+    /// reason: what comes too seldom to be seen in any pilot has no variance that would tell.
+    double squared_lack(const PilotPixels &other) const;
 
   private:
     /// Sum over the passes of a part of a pixel's radiance, of its squares, and of the first half less the second.
@@ -79,7 +90,10 @@ class PilotPixels {
     struct Pixel {
         uint32_t x, y;  ///< in the frame
         Moments camera, global, caustic, global_blur, caustic_blur;
+        std::array<Vec3, passes> radiance;
     };
+
+    std::vector<Vec3> means() const;
 
     std::vector<Pixel> pixels_;
     uint32_t added_ = 0;

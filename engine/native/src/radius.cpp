@@ -12,7 +12,9 @@ namespace {
 
 constexpr double caustic_photons_in_kernel = 20;
 constexpr float least_caustic_pixels = 5;
-constexpr uint64_t max_pilot_photons = 1 << 16;
+/// Of the width of what the camera sees: wider kernels would blur all that there is to see of indirect light.
+constexpr float largest_share_of_view = 0.125f;
+constexpr uint64_t max_pilot_photons = 1 << 14;
 constexpr uint64_t pilot_pixels = 512;
 constexpr uint32_t pilot_stream = 0x70696c6f;
 
@@ -105,15 +107,18 @@ float choose_indirect_radius(const Scene &scene, const Emission &emission, const
     // Find what radius holds k of them around points that the camera sees; where it sees too little to judge by, around
     // the photons themselves. Without any, any radius will do.
     const double k = pilot.stands_for(usual_photons_in_kernel, 16);
-    std::vector<float> radii;
+    std::vector<float> radii, widths;
     for (const SeenPoint &point : seen_points(scene, camera, pass.seed, cancel)) {
         throw_if_cancelled(cancel);
         const Query query{point.position, point.normal, point.normal};
         radii.push_back(radius_holding(pilot.map, query, static_cast<size_t>(k), max_radius));
+        widths.push_back(camera.footprint(point.distance) * static_cast<float>(camera.frame_width));
     }
-    if (radii.empty()) radii = radii_around_photons(pilot.map, k, max_radius, cancel);
+    const bool sees_any = !radii.empty();
+    if (!sees_any) radii = radii_around_photons(pilot.map, k, max_radius, cancel);
     if (radii.empty()) return max_radius / 100;
-    return scaled(median(radii), usual_photons_in_kernel, pilot, k);
+    const float radius = scaled(median(radii), usual_photons_in_kernel, pilot, k);
+    return sees_any ? std::min(radius, largest_share_of_view * median(widths)) : radius;
 }
 
 float choose_caustic_radius(const Scene &scene, const Emission &emission, const Camera &camera,

@@ -47,6 +47,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       receives_(std::ranges::any_of(
           scene.slot_materials, [&](uint32_t m) { return (scene.materials[m].traits.lobes & diffuse_lobes) != 0; })),
+      indirect_(settings.use_final_gather ? Indirect::gather : Indirect::photons),
       counts_(photon_counts_for(settings, camera)),
       film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
@@ -58,7 +59,7 @@ bool Render::traces(PhotonPurpose purpose) const {
         (settings_.integrator == Integrator::photon_map || is_guided()) && settings_.max_bounces > 0;
     if (!wants_photons || emission_.empty() || scene_.instances.empty() || !receives_) return false;
     return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
-                                             : settings_.use_indirect;
+                                             : settings_.use_indirect && indirect_ != Indirect::paths;
 }
 
 /// Whether caustics are gathered by nested radii.
@@ -69,7 +70,7 @@ bool Render::is_nested() const {
 /// Whether photons tell camera paths where to go on diffusely.
 bool Render::is_guided() const {
     const bool goes_on = settings_.integrator == Integrator::path_tracing ||
-                         (settings_.integrator == Integrator::photon_map && settings_.use_final_gather);
+                         (settings_.integrator == Integrator::photon_map && indirect_ != Indirect::photons);
     return settings_.use_photon_guiding && goes_on;
 }
 
@@ -87,7 +88,7 @@ PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
             settings_.max_bounces,
             hash(settings_.seed, stream),
             settings_.threads,
-            settings_.keep_photons || (is_global && settings_.use_final_gather),
+            settings_.keep_photons || (is_global && indirect_ == Indirect::gather),
             is_global && marks_shadows()};
 }
 
@@ -137,7 +138,7 @@ TracedPhotons Render::trace(uint32_t index) {
     TracedPhotons photons;
     if (first_radii_->indirect > 0) {
         PhotonTracing global = tracing(PhotonPurpose::global, index);
-        if (settings_.use_final_gather) --global.max_bounces;  // the gathering ray is a bounce more
+        if (indirect_ == Indirect::gather) --global.max_bounces;  // the gathering ray is a bounce more
         photons = trace_photons(scene_, emission_, global, &cancel_);
     }
     if (first_radii_->caustic > 0) {
@@ -169,7 +170,7 @@ Render::Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) cons
         if (!settings_.keep_photons) photons.photons[kind] = {};  // the map has copies
     };
     if (settings_.integrator != Integrator::photon_map) return maps;
-    if (radii.indirect > 0 && settings_.use_final_gather) {
+    if (radii.indirect > 0 && indirect_ == Indirect::gather) {
         // Where the rays of a final gather end, photons bring the lights' own light too.
         std::vector<Photon> all = photons[PM_PHOTONS_DIRECT];
         all.insert(all.end(), photons[PM_PHOTONS_INDIRECT].begin(), photons[PM_PHOTONS_INDIRECT].end());
@@ -210,7 +211,7 @@ CameraPass Render::camera_pass(const Maps &maps, const PhotonMaps &gathers, uint
             settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
             maps.importance ? &*maps.importance : nullptr,
             maps.shadow_photons ? &*maps.shadow_photons : nullptr,
-            settings_.use_final_gather && settings_.use_indirect,
+            indirect_,
             settings_.max_bounces,
             hash(settings_.seed, camera_stream),
             index,
@@ -226,11 +227,13 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     if (!first_radii_) {
         const Stopwatch watch(spent.seconds_trace);
         const PhotonCounts counts = counts_;
+        const Indirect indirect = indirect_;
         try {
             choose_radii();
             make_plan();
         } catch (...) {  // a render that goes on after a cancel begins here again
             counts_ = counts;
+            indirect_ = indirect;
             first_radii_.reset();
             throw;
         }

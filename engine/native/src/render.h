@@ -68,6 +68,7 @@ class Render {
     const RenderStatistics &statistics() const { return statistics_; }
     bool keeps_photons() const { return settings_.keep_photons; }
     PhotonCounts photon_counts() const { return counts_; }
+    Indirect indirect() const { return indirect_; }
     /// What the plan was made from; zero before the first pass or without a plan.
     const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
@@ -98,7 +99,8 @@ class Render {
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     void choose_radii();
     void make_plan();
-    PilotNoise run_pilot_passes();
+    PilotNoises run_pilot_passes();
+    bool may_go_by_paths() const;
     CameraPass camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
@@ -115,6 +117,7 @@ class Render {
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
     bool receives_;  ///< whether any surface may scatter light diffusely, so that photons are of use
+    Indirect indirect_;
     PhotonCounts counts_;
     PilotNoise pilot_noise_;
     std::optional<Radii> first_radii_;  ///< of pass 0, once chosen

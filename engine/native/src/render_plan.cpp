@@ -49,8 +49,8 @@ void Render::choose_radii() {
 
 /// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
 /// is summed would not be blind to it.
-PilotNoise Render::run_pilot_passes() {
-    PilotPixels pixels(camera_);
+PilotNoises Render::run_pilot_passes() {
+    PilotPixels by_photons(camera_), by_paths(camera_);
     uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
     for (uint32_t pilot = 0; pilot < PilotPixels::passes; ++pilot) {
         const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
@@ -61,7 +61,10 @@ PilotNoise Render::run_pilot_passes() {
         stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
         const Maps maps = build_maps(photons, *first_radii_);
         const PhotonMaps gathers = gathers_of(maps, *first_radii_);
-        pixels.add(camera_pass(maps, gathers, index), &cancel_);
+        by_photons.add(camera_pass(maps, gathers, index), &cancel_);
+        CameraPass paths = camera_pass(maps, gathers, index);
+        paths.indirect = Indirect::paths;
+        by_paths.add(paths, &cancel_);
     }
 
     // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
@@ -70,26 +73,29 @@ PilotNoise Render::run_pilot_passes() {
         const auto emitted = static_cast<double>(count * PilotPixels::passes);
         return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
     };
-    PilotNoise noise;
-    pixels.find_noise(noise);
-    int maps = 0;
-    if (first_radii_->indirect > 0) {
-        ++maps;
-        noise.global.count = static_cast<double>(counts_.global);
-        noise.global.cost = cost(rays, stored, counts_.global);
-    }
-    if (first_radii_->caustic > 0) {
-        ++maps;
-        if (is_nested()) {  // the chosen radii have about as much blur as noise
-            noise.caustic.variance *= 2;
-            noise.caustic.blur = 0;
-        }
-        noise.caustic.count = static_cast<double>(counts_.caustic);
-        noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
-    }
+    PilotNoises noises;
+    by_photons.find_noise(noises.photons);
+    by_paths.find_noise(noises.paths);
+    noises.photons.lack = by_photons.squared_lack(by_paths);
+    noises.paths.lack = by_paths.squared_lack(by_photons);
     const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
-    noise.pixel_cost = frame * (pixels.rays_per_pixel() + query_cost * maps);
-    return noise;
+    const bool has_caustics = first_radii_->caustic > 0, has_global = first_radii_->indirect > 0;
+    for (PilotNoise *noise : {&noises.photons, &noises.paths}) {
+        if (!has_caustics) continue;
+        if (is_nested()) {  // the chosen radii have about as much blur as noise
+            noise->caustic.variance *= 2;
+            noise->caustic.blur = 0;
+        }
+        noise->caustic.count = static_cast<double>(counts_.caustic);
+        noise->caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
+    }
+    if (has_global) {
+        noises.photons.global.count = static_cast<double>(counts_.global);
+        noises.photons.global.cost = cost(rays, stored, counts_.global);
+    }
+    noises.photons.pixel_cost = frame * (by_photons.rays_per_pixel() + query_cost * (has_caustics + has_global));
+    noises.paths.pixel_cost = frame * (by_paths.rays_per_pixel() + query_cost * has_caustics);
+    return noises;
 }
 
 void Render::make_plan() {
@@ -101,21 +107,32 @@ void Render::make_plan() {
     // See what a few passes bring to some pixels.
     const PhotonCounts usual = counts_;
     counts_ = {std::min(usual.global, most_pilot_photons), std::min(usual.caustic, most_pilot_photons)};
-    pilot_noise_ = run_pilot_passes();
+    PilotNoises noises = run_pilot_passes();
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
     const double photons_in_kernel =
         usual_photons_in_kernel * static_cast<double>(counts_.global) / static_cast<double>(usual.global);
-    pilot_noise_.gather_cost =
+    noises.photons.gather_cost =
         static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;
 
     // Without an error to stop at, the one that most pictures are made for.
     constexpr double usual_error = 0.02;
     const double error = settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error;
-    const Plan plan = plan_for(pilot_noise_, error, settings_.use_progressive);
+    const Plan by_photons = plan_for(noises.photons, error, settings_.use_progressive);
+    const Plan by_paths = plan_for(noises.paths, error, settings_.use_progressive);
+    const bool takes_paths = may_go_by_paths() && by_paths.cost < by_photons.cost;
+    const Plan &plan = takes_paths ? by_paths : by_photons;
+    pilot_noise_ = takes_paths ? noises.paths : noises.photons;
     counts_ = plan.counts;
-    first_radii_->indirect *= plan.global_radius;
+    first_radii_->indirect *= takes_paths ? 0 : plan.global_radius;
+    if (takes_paths) indirect_ = Indirect::paths;
+}
+
+/// Whether nothing but the light of diffuse bounces is asked of the global map's photons.
+bool Render::may_go_by_paths() const {
+    return first_radii_->indirect > 0 && indirect_ == Indirect::photons && !marks_shadows() &&
+           !settings_.use_photon_guiding;
 }
 
 }  // namespace photon_maps
