@@ -150,8 +150,8 @@ typedef struct pm_statistics {
     uint64_t caustic_photons; /* stored, part of photons_stored */
     float caustic_radius_first;
     float caustic_radius_last;
-    uint32_t caster_count; /* objects that can focus light; 0: no caustic photon is traced */
-    uint32_t indirect;     /* pm_indirect: as set, or with use_auto as chosen */
+    uint32_t caster_count;       /* objects that can focus light; 0: no caustic photon is traced */
+    uint32_t indirect;           /* pm_indirect: as set, or with use_auto as chosen */
     uint64_t shadow_rays;        /* traced by the camera's paths */
     uint64_t spared_shadow_rays; /* whose answer shadow photons knew */
     double emitted[3];           /* W, mean over the passes: emitted = absorbed + escaped + cut */
