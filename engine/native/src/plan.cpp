@@ -75,7 +75,7 @@ Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     return best;
 }
 
-PilotPixels::PilotPixels(const Camera &camera) {
+PilotPixels::PilotPixels(const Camera &camera, bool is_nested) : is_nested_(is_nested) {
     const uint64_t all = uint64_t{camera.frame_width} * camera.frame_height;
     const auto count = static_cast<uint32_t>(std::min<uint64_t>(watched_pixels, all));
     for (uint32_t i = 0; i < count; ++i) {
@@ -91,7 +91,9 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
     std::vector<RayCounts> counts(pixels_.size());
     parallel_for(pass.threads, pixels_.size(), cancel, [&](size_t i) {
         Pixel &pixel = pixels_[i];
-        const PixelSample sample = render_pixel(pass, pixel.x, pixel.y, true, counts[i], nullptr);
+        Levels levels;
+        const PixelSample sample =
+            render_pixel(pass, pixel.x, pixel.y, true, counts[i], is_nested_ ? &levels : nullptr);
         pixel.radiance[added_] = sample.radiance();
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);

@@ -61,7 +61,8 @@ class PilotPixels {
   public:
     static constexpr uint32_t passes = 4;
 
-    explicit PilotPixels(const Camera &camera);
+    /// @param is_nested whether caustics are gathered by nested radii
+    PilotPixels(const Camera &camera, bool is_nested);
 
     /// Renders the pixels in one pass: of `passes` with consecutive indices, so that they stratify each other as those
     /// of a picture do.
@@ -96,6 +97,7 @@ class PilotPixels {
     std::vector<Vec3> means() const;
 
     std::vector<Pixel> pixels_;
+    bool is_nested_;
     uint32_t added_ = 0;
     uint64_t rays_ = 0;
 };

@@ -50,7 +50,7 @@ void Render::choose_radii() {
 /// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
 /// is summed would not be blind to it.
 PilotNoises Render::run_pilot_passes() {
-    PilotPixels by_photons(camera_), by_paths(camera_);
+    PilotPixels by_photons(camera_, is_nested()), by_paths(camera_, is_nested());
     uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
     for (uint32_t pilot = 0; pilot < PilotPixels::passes; ++pilot) {
         const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
@@ -82,10 +82,6 @@ PilotNoises Render::run_pilot_passes() {
     const bool has_caustics = first_radii_->caustic > 0, has_global = first_radii_->indirect > 0;
     for (PilotNoise *noise : {&noises.photons, &noises.paths}) {
         if (!has_caustics) continue;
-        if (is_nested()) {  // the chosen radii have about as much blur as noise
-            noise->caustic.variance *= 2;
-            noise->caustic.blur = 0;
-        }
         noise->caustic.count = static_cast<double>(counts_.caustic);
         noise->caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
     }
