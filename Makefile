@@ -33,7 +33,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart prediction calibration package test test-native test-python test-campaign lint format \
+.PHONY: help demo beside seed chart prediction calibration sweep package test test-native test-python test-campaign lint format \
     bench clean
 
 help:
@@ -47,6 +47,7 @@ help:
 	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'
 	@echo 'make prediction    the time that the chart of a scene foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
+	@echo 'make sweep     Automatic beside the best of many settings by hand: [SWEEP="--scenes gap"]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender: $(ZIP)'
 	@echo 'make format    bring all sources into the project style'
@@ -123,6 +124,9 @@ beside: $(ZIP) .venv/system.stamp
 # Draws build/chart/calibration.png of docs/error.md.
 calibration: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.calibration_bench $(CALIBRATION)
+
+sweep: build/native/stamp .venv/chart.stamp
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.sweep_bench $(SWEEP)
 
 prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)

@@ -131,7 +131,7 @@ class PhotonPath {
         } else {
             // As camera_path.h has it: at a sheet that encloses nothing flux is scaled in the place of radiance.
             const bool is_body = scene_.mesh_of(hit).is_closed;
-            drawn = sample(shading, lobes, {u[0], u[1], u[2]}, is_body ? Transport::flux : Transport::radiance);
+            drawn = draw(shading, lobes, {u[0], u[1], u[2]}, is_body ? Transport::flux : Transport::radiance);
             if (!drawn) return end(before, {});
             flux_ *= drawn->weight * (normal_correction(hit, ray_.direction, drawn->direction) / (1 - go_straight));
             if (state_.depth == tracing_.max_bounces) {
@@ -155,6 +155,20 @@ class PhotonPath {
         source_visibility_ = scene_.instances[hit.instance].visibility;
         ray_ = {hit.origin_towards(drawn->direction), drawn->direction};
         return true;
+    }
+
+    /// Draws by diffuse or by glossy closures alone where that decides which map the photon is for: a direction that
+    /// either may send it in would bring the light of both to one map.
+    std::optional<ScatterSample> draw(const Shading &shading, Lobes lobes, std::array<float, 3> u,
+                                      Transport transport) const {
+        if (was_diffuse_) return sample(shading, lobes, u, transport);
+        const float diffuse = average(albedo(shading, lobes & diffuse_lobes)) / average(albedo(shading, lobes));
+        const bool is_diffuse = u[2] < diffuse;
+        const float share = is_diffuse ? diffuse : 1 - diffuse;
+        u[2] = std::min((is_diffuse ? u[2] : u[2] - diffuse) / share, 1 - std::numeric_limits<float>::epsilon() / 2);
+        auto drawn = sample(shading, lobes & (is_diffuse ? diffuse_lobes : glossy_lobes), u, transport);
+        if (drawn) drawn->weight = drawn->weight / share;
+        return drawn;
     }
 
     bool end(Vec3 before, Vec3 after) {

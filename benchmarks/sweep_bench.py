@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Automatic against settings by hand: CPU-seconds to an error of 2 % with nothing set, and with the best of a sweep.
+
+Photons and radii of the sweep are multiples of those that Automatic chooses, so it looks where the best are to be
+expected; final gather and path tracing are tried too. Writes sweep.csv to build/chart.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from itertools import product
+from multiprocessing import get_context
+from pathlib import Path
+
+from photon_maps_native import SceneData, Statistics
+
+from benchmarks.chart.errors import LEAST_SHARE
+from benchmarks.chart.measure import Measured
+from benchmarks.chart.methods import DEFAULT, GATHER
+from benchmarks.chart.scenes import PATHS, SCENES, Scene
+from engine.settings import Estimate, RenderSettings
+from tests.reference_scenes import relative_mean_square_error
+
+OUT = Path("build/chart")
+TARGET = 4e-4  #: relMSE of an error of 2 %
+PHOTONS = (0.25, 1.0, 4.0)
+RADII = (0.6, 1.0, 1.6)
+ESTIMATES = (Estimate.RADIUS, Estimate.ADAPTIVE)
+WANTED = 1.3  #: time with nothing set over the best by hand
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scene."""
+
+    scene: str
+    automatic: float  #: CPU-seconds
+    best: float  #: of the settings by hand; that of Automatic if none is faster
+    name: str  #: of the best
+
+    @property
+    def ratio(self) -> float:
+        return self.automatic / self.best
+
+    def line(self) -> str:
+        """Return it in words."""
+        return f"{self.scene}: {self.automatic:.2f} s, by hand {self.best:.2f} s ({self.name}), ratio {self.ratio:.2f}"
+
+
+def by_hand(scene: Scene, chosen: Statistics) -> Iterator[tuple[str, RenderSettings]]:
+    """Yield the sweep's settings with their names."""
+    off: dict[str, object] = {"use_auto": False, "estimate": Estimate.RADIUS}
+    photon_count = max(chosen.photon_count, chosen.caustic_photon_count)
+    radius = chosen.radius_first or chosen.caustic_radius_first
+    if radius > 0:
+        for photons, times, estimate in product(PHOTONS, RADII, ESTIMATES):
+            fields = {"photon_count": int(photons * photon_count), "radius": times * radius, "estimate": estimate}
+            name = f"{estimate.name}, {photons:g} x {photon_count} photons, {times:g} x radius {radius:.3g}"
+            yield name, DEFAULT.settings(scene, 0.0, **(off | fields))
+    yield "photons and radii of no plan", DEFAULT.settings(scene, 0.0, **off)
+    yield "final gather", DEFAULT.settings(scene, 0.0, **(off | GATHER))
+    yield "path tracing", DEFAULT.settings(scene, 0.0, **(off | PATHS))
+
+
+def seconds_to_target(scene: Scene, data: SceneData, settings: RenderSettings, limit: float) -> tuple[float, Measured]:
+    """Render until the error is small enough; return the CPU-seconds, infinite where the limit came first."""
+    reference = scene.reference()
+    render = Measured(data, settings)
+    while render.seconds < limit:
+        render.step()
+        error = relative_mean_square_error(render.picture.pixels(), reference.radiance)
+        if max(error - reference.noise, LEAST_SHARE * error) <= TARGET:
+            return render.seconds, render
+    return float("inf"), render
+
+
+def measure(name: str, limit: float) -> Row:
+    """Render a scene with nothing set, then by hand as long as that took."""
+    scene = SCENES[name]
+    data = scene.data()
+    automatic, render = seconds_to_target(scene, data, DEFAULT.settings(scene, 0.0), limit)
+    best, best_name = min(automatic, limit), "Automatic"
+    for label, settings in by_hand(scene, render.picture.render.statistics()):
+        seconds, _ = seconds_to_target(scene, data, settings, best)
+        if seconds < best:
+            best, best_name = seconds, label
+    return Row(name, automatic, best, best_name)
+
+
+def main() -> int:
+    """Measure the scenes asked for; return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--limit", type=float, default=60.0, help="CPU-seconds for a render")
+    parser.add_argument("--processes", type=int, default=2, help="scenes at a time")
+    asked = parser.parse_args()
+    OUT.mkdir(parents=True, exist_ok=True)
+    rows: list[Row] = []
+    with ProcessPoolExecutor(asked.processes, mp_context=get_context("spawn")) as workers:
+        for future in [workers.submit(measure, name, asked.limit) for name in asked.scenes]:
+            rows.append(future.result())
+            print(rows[-1].line(), flush=True)
+    with (OUT / "sweep.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(asdict(rows[0])))
+        writer.writeheader()
+        writer.writerows(map(asdict, rows))
+    told = [row for row in rows if row.automatic < float("inf")]
+    kept = sum(row.ratio <= WANTED for row in told)
+    print(f"{kept} of {len(told)} within {WANTED} of the best by hand; {len(rows) - len(told)} did not come to 2 %")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
