@@ -9,7 +9,7 @@ namespace photon_maps {
 namespace {
 
 /// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
-constexpr float largest_nested = 2;
+constexpr float largest_nested = 1.4f;
 
 }  // namespace
 
