@@ -33,15 +33,16 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart prediction calibration sweep package test test-native test-python test-campaign lint format \
-    bench clean
+.PHONY: help demo beside seed chart prediction calibration sweep package test test-native test-python test-gui \
+    test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
 	@echo 'make beside    beside Cycles in the same CPU time: [BLEND=file.blend] [OUT=picture.png] [CPU_SECONDS=120]'
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
+	@echo 'make test-gui  the rendered viewport in the window of a real Blender, 1.3 GB in build the first time; needs root'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
-	@echo 'make bench     speed of the photon map, of the photon pass and of the export'
+	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
 	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'
@@ -170,16 +171,24 @@ test-native: build/native/stamp
 	    ctest --test-dir build/cmake/$$kind --parallel $(JOBS) --output-on-failure --no-tests=error || exit 1; \
 	done
 
+WITHOUT_BLENDER := --ignore=tests/blender --ignore=tests/gui
+
 test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	@# Side by side: those in Blender use one core most of the time. There without build/native: the wheels are the zip's.
 	@mkdir -p build
 	@timeout 900 $(PYTHON) -m pytest tests/blender -o pythonpath=. \
 	    > build/tests_blender.log 2>&1 & blender=$$!; \
-	timeout 900 $(PYTHON) -m pytest tests --ignore=tests/blender; native=$$?; \
+	timeout 900 $(PYTHON) -m pytest tests $(WITHOUT_BLENDER); native=$$?; \
 	wait $$blender; in_blender=$$?; cat build/tests_blender.log; exit $$((native + in_blender))
 
+# BLENDER_ROOT: a folder that holds another Blender, made by `bash tests/gui/blender.sh FOLDER sid`.
+test-gui: .venv/test.stamp $(ZIP)
+	@mkdir -p build
+	bash tests/gui/blender.sh "$${BLENDER_ROOT:-build/blender-trixie}"
+	timeout 1800 $(PYTHON) -m pytest tests/gui -o pythonpath=.
+
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
-	$(PYTHON) -m pytest tests --ignore=tests/blender -m campaign
+	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m campaign
 	$(PYTHON) -m pytest tests/blender -o pythonpath=. -m campaign
 
 bench: build/native/stamp .venv/system.stamp
@@ -189,7 +198,9 @@ bench: build/native/stamp .venv/system.stamp
 	@for program in build/cmake/release/benchmarks/*_bench; do \
 	    echo "== $$(basename $$program)"; PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) $$program || exit 1; \
 	done
-	@echo '== export_bench'; PYTHONPATH=.:build/native $(PYTHON) benchmarks/export_bench.py
+	@for script in export viewport; do \
+	    echo "== $${script}_bench"; PYTHONPATH=.:build/native $(PYTHON) benchmarks/$${script}_bench.py || exit 1; \
+	done
 
 clean:
 	rm -rf build dist wheels

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import final_render, last_render
+from . import final_render, last_render, viewport_render
 
 
 class PhotonMapsEngine(bpy.types.RenderEngine):
@@ -21,7 +21,14 @@ class PhotonMapsEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)  # Blender 4.4 and later construct it with arguments of their own
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
-        final_render.render(self, depsgraph)
+        with viewport_render.paused():
+            final_render.render(self, depsgraph)
+
+    def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        viewport_render.of(self).update(context, depsgraph)
+
+    def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        viewport_render.of(self).draw(context, depsgraph)
 
     def update_render_passes(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
         for info in final_render.wanted_passes(view_layer):
@@ -30,9 +37,11 @@ class PhotonMapsEngine(bpy.types.RenderEngine):
 
 def register() -> None:
     bpy.utils.register_class(PhotonMapsEngine)
+    viewport_render.register()
 
 
 def unregister() -> None:
+    viewport_render.unregister()
     # An engine that is still registered when Blender exits makes some versions hang or crash.
     if PhotonMapsEngine.is_registered:  # Blender itself took it out if another add-on brought an engine of its name
         bpy.utils.unregister_class(PhotonMapsEngine)

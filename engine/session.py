@@ -54,17 +54,28 @@ class Session:
         settings: RenderSettings,
         buffers: frozenset[Pass] = frozenset({Pass.COMBINED}),
         camera: Camera | None = None,
+        map_bytes: int = 0,
     ):
         """Prepare a picture; scene data is copied into the helper, a loaded scene is shared and left open.
 
         :param camera: another than the scene's.
+        :param map_bytes: memory for photon maps of early passes, which pictures after set_camera() share.
         :raises photon_maps_native.NativeError: if an array is refused, or Embree cannot be used.
         """
         self.settings = settings
         self._own_scene = LoadedScene(scene) if isinstance(scene, SceneData) else None
         loaded = self._own_scene or scene
         self._render = NativeRender(loaded.native, camera or loaded.camera, settings, buffers | {Pass.ERROR})
-        self._next_pass = settings.pass_offset
+        self._render.keep_maps(map_bytes)
+        self._begin()
+
+    def set_camera(self, camera: Camera) -> None:
+        """Begin the picture again, seen by another camera; photon counts and radii stay as chosen for the first."""
+        self._render.set_camera(camera)
+        self._begin()
+
+    def _begin(self) -> None:
+        self._next_pass = self.settings.pass_offset
         self._started = time.monotonic()
 
     def step(self) -> bool:

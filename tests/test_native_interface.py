@@ -170,6 +170,8 @@ def test_null_handles_and_pointers_are_refused() -> None:
         "pm_scene_set_lights": (null, None, 1),
         "pm_scene_set_world": (null, 0, 0),
         "pm_render_create": (null, None, None, None),
+        "pm_render_set_camera": (null, None),
+        "pm_render_keep_maps": (null, 0),
         "pm_render_pass": (null, 0),
         "pm_render_cancel": (null,),
         "pm_render_read": (null, 0, None, 0),
@@ -184,6 +186,16 @@ def test_null_handles_and_pointers_are_refused() -> None:
         assert caught.value.status == Status.INVALID_ARGUMENT
     for name in ("pm_device_release", "pm_scene_release", "pm_render_release"):
         getattr(library.load_library(), name)(null)
+
+
+def test_another_camera_is_checked_like_the_first_and_one_that_is_refused_changes_nothing() -> None:
+    data = plain()
+    picture = Picture(data, box_filtered()).run(1)
+    before = picture.pixels()
+    with pytest.raises(NativeError, match="clip_end") as caught:
+        picture.render.set_camera(replace(data.camera, clip_start=2.0, clip_end=1.0))
+    assert caught.value.status == Status.INVALID_ARGUMENT
+    np.testing.assert_array_equal(picture.pixels(), before)
 
 
 def test_negative_counts_are_refused() -> None:

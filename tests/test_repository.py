@@ -27,6 +27,8 @@ FLOORS = {
     "engine/map_choice": 1,
     "engine/messages": 1,
     "engine/session": 1,
+    "engine/changes": 1,
+    "engine/viewport_worker": 1,
     "engine/summary": 1,
     "engine/properties": 1,
     "engine/user_settings": 1,
@@ -81,7 +83,7 @@ def test_everything_below_the_export_works_without_blender():
 import sys
 sys.modules["bpy"] = None
 import photon_maps_native
-from engine import last_chart, map_choice, messages, passes, session, settings, summary
+from engine import changes, last_chart, map_choice, messages, passes, session, settings, summary, viewport_worker
 from engine.chart import figure, job, report
 print(sorted(name for name in sys.modules if name.split(".")[0] in {"mathutils", "bmesh", "gpu"}))
 """

@@ -11,6 +11,7 @@ import numpy as np
 from photon_maps_native.scene_data import Attribute, Domain, Mesh
 
 from ..messages import Messages
+from .kept import split_known
 from .material import MaterialTable
 from .mesh import read, read_corners
 from .resources import asked_attributes
@@ -56,22 +57,35 @@ class MeshAttributes:
     _read: dict[int, set[int]] = field(default_factory=dict)  #: by mesh
     _seen: set[tuple[int, tuple[int, ...]]] = field(default_factory=set)  #: meshes with materials
 
-    def complete(self, index: int, mesh: Mesh, materials: tuple[int, ...], object: bpy.types.Object) -> None:
+    def complete(
+        self,
+        index: int,
+        mesh: Mesh,
+        materials: tuple[int, ...],
+        source: bpy.types.Mesh,
+        owner: str,
+        known: dict[tuple[str, str], Attribute],
+    ) -> None:
         """Add to a mesh what materials ask for and it does not have yet.
 
         :param index: number of the mesh.
         :param materials: numbers of the materials that its triangles may have.
-        :param object: an evaluated object with that mesh.
+        :param source: Blender's mesh that it was read from.
+        :param owner: name of an object with that mesh.
+        :param known: attributes of the mesh that were read before, by kind and name; what is read is added.
         """
         if (index, materials) in self._seen:
             return
         self._seen.add((index, materials))
-        known = self._read.setdefault(index, set())
-        missing = set().union(*(self._of(material) for material in materials)) - known
+        done = self._read.setdefault(index, set())
+        missing = set().union(*(self._of(material) for material in materials)) - done
         if missing:
-            known |= missing
+            done |= missing
             names = {number: name for name, number in self.materials.resources.attributes.items() if number in missing}
-            mesh.attributes += read_attributes(object.data, names, object.name, self.messages)
+            found, names = split_known(names, known)
+            read = read_attributes(source, names, owner, self.messages) if names else []
+            known.update({names[attribute.id]: attribute for attribute in read})
+            mesh.attributes += found + read
 
     def _of(self, material: int) -> set[int]:
         if material not in self._asked:

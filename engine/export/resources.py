@@ -9,6 +9,8 @@ from photon_maps_native import Image, Material, Table, Texture
 from photon_maps_native.scene_data import Alpha, Light
 from photon_maps_native.shader import NormalSpace, Op
 
+from .kept import Kept
+
 #: In NORMAL_MAP's option the attribute's number begins at this bit.
 NORMAL_MAP_ATTRIBUTE_SHIFT = 8
 
@@ -20,7 +22,12 @@ class Resources:
     ("generated", ""), ("color", name), ("color", "") the colour that is active for rendering, ("attribute", name).
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kept: Kept | None = None) -> None:
+        """Hold nothing yet.
+
+        :param kept: images that need not be read again.
+        """
+        self.kept = kept or Kept()
         self.tables: list[Table] = []
         self.textures: list[Texture] = []
         self.images: list[Image] = []

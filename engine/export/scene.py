@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import bpy
@@ -17,6 +18,7 @@ from .attribute import MeshAttributes
 from .camera import read_camera
 from .dependencies import name_unmet
 from .holdout import held_out
+from .kept import Kept, KeptMesh
 from .light import read_light
 from .material import MaterialTable
 from .mesh import read_mesh
@@ -50,8 +52,10 @@ class _Rows:
     messages: Messages
     override: bpy.types.Material | None  #: the view layer's material for everything
     attributes: MeshAttributes
+    kept: Kept
     meshes: list[Mesh] = field(default_factory=list)
-    known: dict[int, tuple[int, int] | None] = field(default_factory=dict)  #: mesh and slots, by Blender's address
+    #: Number of the mesh, its slots and what is known of it, by Blender's address; None: nothing to render.
+    known: dict[int, tuple[int, int, KeptMesh] | None] = field(default_factory=dict)
     names: list[str] = field(default_factory=list)  #: of the objects, one an instance
     instance_meshes: list[int] = field(default_factory=list)
     transforms: list[Matrix] = field(default_factory=list)
@@ -77,13 +81,36 @@ def read_scene(
     :param is_cancelled: asked now and then.
     :return: None if it was cancelled.
     """
+    contents = read_contents(depsgraph, messages, is_cancelled)
+    if contents is None:
+        return None
+    return replace(contents, camera=read_camera(camera, depsgraph, messages))
+
+
+def read_contents(
+    depsgraph: bpy.types.Depsgraph,
+    messages: Messages,
+    is_cancelled: Callable[[], bool] = lambda: False,
+    viewport: bpy.types.SpaceView3D | None = None,
+    kept: Kept | None = None,
+) -> SceneData | None:
+    """Copy everything but the camera.
+
+    :param is_cancelled: asked now and then.
+    :param viewport: leaves out what it does not show: with local view, local collections, or by type.
+    :param kept: of earlier readings, told what has changed since; adds what it reads.
+    :return: None if it was cancelled.
+    """
     layer = depsgraph.view_layer_eval
-    resources = Resources()
+    kept = kept or Kept()
+    resources = Resources(kept)
     materials = MaterialTable(resources, messages)
-    rows = _Rows(materials, messages, layer.material_override, MeshAttributes(materials, messages))
+    rows = _Rows(materials, messages, layer.material_override, MeshAttributes(materials, messages), kept)
     for number, instance in enumerate(depsgraph.object_instances):
         if number % CANCEL_INTERVAL == CANCEL_INTERVAL - 1 and is_cancelled():
             return None
+        if viewport is not None and not instance.object.visible_in_viewport_get(viewport):
+            continue
         # The object and its pointers are only good until the next instance: copy now.
         if instance.show_self:
             _add_instance(rows, instance, layer)
@@ -95,7 +122,7 @@ def read_scene(
         instances=_instances(rows),
         materials=rows.materials.materials,
         lights=rows.lights + [replace(sun, visibility=visibility) for sun in resources.suns.values()],
-        camera=read_camera(camera, depsgraph, messages),
+        camera=None,
         world=World(rows.materials.add(surroundings), visibility),
         images=resources.images,
         textures=resources.textures,
@@ -148,33 +175,54 @@ def _add_mesh(rows: _Rows, instance: bpy.types.DepsgraphObjectInstance, visibili
     if not visibility:
         return
     object = instance.object
-    key = object.data.as_pointer()  # objects that share their mesh, or its evaluated form, share the triangles
-    if key not in rows.known:
-        rows.known[key] = _read_new_mesh(rows, object)
-    known = rows.known[key]
-    if known is None:
+    with _triangles_of(object) as data:
+        key = object.data.as_pointer()  # objects that share their mesh, or its evaluated form, share the triangles
+        if key not in rows.known:
+            rows.known[key] = _read_new_mesh(rows, instance, data)
+        known = rows.known[key]
+        if known is None:
+            return
+        index, slot_count, kept = known
+        rows.names.append(object.name)
+        rows.instance_meshes.append(index)
+        rows.transforms.append(instance.matrix_world.copy())
+        first_slot = _first_slot(rows, object, slot_count, holdout)
+        rows.first_slots.append(first_slot)
+        rows.visibility.append(visibility)
+        rows.properties.append(shader_properties(instance))
+        materials = tuple(rows.slot_materials[first_slot : first_slot + slot_count])
+        rows.attributes.complete(index, rows.meshes[index], materials, data, object.name, kept.attributes)
+
+
+@contextmanager
+def _triangles_of(object: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """Give the evaluated mesh; while it is edited, Blender keeps it in another form, of which this is a copy."""
+    if not object.data.is_editmode:
+        yield object.data
         return
-    index, slot_count = known
-    rows.names.append(object.name)
-    rows.instance_meshes.append(index)
-    rows.transforms.append(instance.matrix_world.copy())
-    first_slot = _first_slot(rows, object, slot_count, holdout)
-    rows.first_slots.append(first_slot)
-    rows.visibility.append(visibility)
-    rows.properties.append(shader_properties(instance))
-    materials = tuple(rows.slot_materials[first_slot : first_slot + slot_count])
-    rows.attributes.complete(index, rows.meshes[index], materials, object)
+    try:
+        yield object.to_mesh()
+    finally:
+        object.to_mesh_clear()
 
 
-def _read_new_mesh(rows: _Rows, object: bpy.types.Object) -> tuple[int, int] | None:
-    """Return the number of the mesh and how many slots its faces speak of, or None if it has nothing to render."""
-    if not object.data.polygons and not object.modifiers:  # modifiers may leave nothing on purpose
-        rows.messages.add(object.name, "has no faces, so there is nothing to render.")
-    mesh = read_mesh(object.data, object.name, rows.messages, object.original.type == "MESH")
-    if mesh is None:
+def _read_new_mesh(
+    rows: _Rows, instance: bpy.types.DepsgraphObjectInstance, data: bpy.types.Mesh
+) -> tuple[int, int, KeptMesh] | None:
+    """Return the number of the mesh, how many slots its faces speak of, and what is known of it; None: it is empty."""
+    object = instance.object
+
+    def read(messages: Messages) -> Mesh | None:
+        if not data.polygons and not object.modifiers:  # modifiers may leave nothing on purpose
+            messages.add(object.name, "has no faces, so there is nothing to render.")
+        return read_mesh(data, object.name, messages, object.original.type == "MESH")
+
+    kept = rows.kept.mesh(instance, rows.messages, read)
+    if kept.mesh is None:
         return None
-    rows.meshes.append(mesh)
-    return len(rows.meshes) - 1, 1 if mesh.slots is None else int(mesh.slots.max()) + 1
+    rows.meshes.append(replace(kept.mesh, attributes=[]))
+    slots = kept.mesh.slots
+    return len(rows.meshes) - 1, 1 if slots is None else int(slots.max()) + 1, kept
 
 
 def _first_slot(rows: _Rows, object: bpy.types.Object, slot_count: int, holdout: bool) -> int:

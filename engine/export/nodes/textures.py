@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from photon_maps_native.scene_data import Alpha, Extension, Interpolation, Projection, Texture
@@ -87,13 +88,14 @@ def _images(
     if tiles and projection != Projection.FLAT:
         compiler.name(node, "projects a tiled image, of which it shows the first tile.", "Use the projection Flat.")
     frame = user.frame_current if image.source == "SEQUENCE" else None
-    numbers = tuple(
-        compiler.resources.image(
-            (image.session_uid, frame, tile, is_multiplied),
-            lambda tile=tile: read_image(image, compiler.messages, user, tile, is_multiplied),
-        )
-        for tile in tiles or (None,)
-    )
+    resources = compiler.resources
+
+    def number(tile: int | None) -> int:
+        key = (image.session_uid, frame, tile, is_multiplied)
+        read = partial(read_image, image, compiler.messages, user, tile, is_multiplied)
+        return resources.image(key, lambda: resources.kept.image(image, key, read))
+
+    numbers = tuple(map(number, tiles or (None,)))
     return (numbers, tiles) if projection == Projection.FLAT else (numbers[:1], None)
 
 

@@ -219,6 +219,13 @@ PM_API void pm_scene_release(pm_scene *scene);
  * acceleration structure. */
 PM_API pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_settings *settings,
                                   pm_render **render);
+/* Begins another picture of the scene, seen by another camera and of another size if it has one: nothing of the one
+ * before is left. Photon counts and radii stay those chosen for the first camera, and so does the view that shaders
+ * ask for (PM_INPUT_CAMERA_POSITION, PM_INPUT_WINDOW). */
+PM_API pm_status pm_render_set_camera(pm_render *render, const pm_camera *camera);
+/* Keeps the photon maps of the earliest passes in so many bytes at most, so that pictures after pm_render_set_camera()
+ * need not trace them again; without a call none is kept. */
+PM_API pm_status pm_render_keep_maps(pm_render *render, uint64_t bytes);
 /* Renders pass `index`, a function of scene, camera, settings and index alone, and adds it to the picture. */
 PM_API pm_status pm_render_pass(pm_render *render, uint32_t index);
 /* Makes the running pass, or the next one if none runs, return PM_CANCELLED within 100 ms; the one after that starts

@@ -101,6 +101,8 @@ def declare(library: ctypes.CDLL) -> None:
             POINTER(structs.PmSettings),
             POINTER(handle),
         ],
+        "pm_render_set_camera": [handle, POINTER(structs.PmCamera)],
+        "pm_render_keep_maps": [handle, uint64],
         "pm_render_pass": [handle, c_uint32],
         "pm_render_cancel": [handle],
         "pm_render_read": [handle, c_uint32, structs.FloatPointer, uint64],
@@ -233,6 +235,15 @@ class NativeRender(Handle):
             passes=sum(1 << buffer for buffer in buffers), **{name: getattr(settings, name) for name in names}
         )
         call("pm_render_create", scene.handle, byref(to_camera(camera)), byref(native), byref(self._handle))
+
+    def set_camera(self, camera: Camera) -> None:
+        """Begin another picture of the scene, by photon counts and radii as chosen for the first camera."""
+        call("pm_render_set_camera", self.handle, byref(to_camera(camera)))
+        _, _, self._width, self._height = camera.region
+
+    def keep_maps(self, memory_bytes: int) -> None:
+        """Keep the photon maps of the earliest passes in so many bytes, for pictures after set_camera()."""
+        call("pm_render_keep_maps", self.handle, memory_bytes)
 
     def render_pass(self, index: int) -> bool:
         """Render one pass into the picture; other Python threads run meanwhile.

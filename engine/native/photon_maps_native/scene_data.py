@@ -217,7 +217,7 @@ class SceneData:
     instances: Instances
     materials: list[Material]
     lights: list[Light]
-    camera: Camera
+    camera: Camera | None  #: None: each picture is told its own
     world: World | None = None  #: None: black
     images: list[Image] = field(default_factory=list)
     textures: list[Texture] = field(default_factory=list)

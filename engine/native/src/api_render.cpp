@@ -20,6 +20,22 @@ pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_se
     });
 }
 
+pm_status pm_render_set_camera(pm_render *render, const pm_camera *camera) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        pm::require_handle(camera, "camera");
+        pm::validate(*camera);
+        render->render.set_camera(pm::to_camera(*camera));
+    });
+}
+
+pm_status pm_render_keep_maps(pm_render *render, uint64_t bytes) {
+    return pm::guarded([&] {
+        pm::require_handle(render, "render");
+        render->render.keep_maps(bytes);
+    });
+}
+
 pm_status pm_render_pass(pm_render *render, uint32_t index) {
     return pm::guarded([&] {
         pm::require_handle(render, "render");

@@ -43,6 +43,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       lights_(lights),
       emission_(emission),
       camera_(camera),
+      view_(camera),
       settings_(settings),
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       receives_(std::ranges::any_of(
@@ -52,6 +53,14 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
     if (film_.has(Buffer::error)) error_.emplace(camera.width, camera.height);
+}
+
+void Render::set_camera(const Camera &camera) {
+    view_ = camera;
+    film_ = Film(camera.width, camera.height, settings_.buffers, is_nested());
+    if (error_) error_.emplace(camera.width, camera.height);
+    left_out_.assign(film_.tiles().count(), false);
+    statistics_ = {};
 }
 
 bool Render::traces(PhotonPurpose purpose) const {
@@ -93,7 +102,7 @@ PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
 }
 
 void Render::render_pass(uint32_t index) {
-    Film pass_film(camera_.width, camera_.height, settings_.buffers, is_nested());
+    Film pass_film(view_.width, view_.height, settings_.buffers, is_nested());
     try {
         render_into(pass_film, index);
     } catch (const Cancelled &) {
@@ -150,8 +159,22 @@ TracedPhotons Render::trace(uint32_t index) {
     return photons;
 }
 
+std::shared_ptr<const TracedPass> Render::trace_pass(uint32_t index, const Radii &radii, RenderStatistics &spent) {
+    auto pass = std::make_shared<TracedPass>();
+    {
+        const Stopwatch watch(spent.seconds_trace);
+        pass->photons = trace(index);
+    }
+    pass->photons_stored = pass->photons.size();
+    pass->caustic_photons = pass->photons[PM_PHOTONS_CAUSTIC].size();
+    const Stopwatch watch(spent.seconds_build);
+    pass->maps = build_maps(pass->photons, radii);
+    if (!settings_.keep_photons) pass->photons.photons = {};
+    return pass;
+}
+
 /// Builds what pass 2 asks of the photons, whose lists end here unless they are kept.
-Render::Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) const {
+Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) const {
     Maps maps;
     if (is_guided() && radii.indirect > 0) maps.importance = importance_of(photons);
     if (marks_shadows() && radii.indirect > 0) maps.shadow_photons.emplace(photons.shadow_photons, radii.indirect / 2);
@@ -202,10 +225,11 @@ PhotonMaps Render::gathers_of(const Maps &maps, const Radii &radii) const {
     return {gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
 }
 
-CameraPass Render::camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const {
+CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers,
+                               uint32_t index) const {
     return {scene_,
             lights_,
-            camera_,
+            camera,
             pixel_sampler_,
             settings_.integrator,
             settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
@@ -240,40 +264,36 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     }
     const Radii radii = radii_of_pass(index);
 
-    // Pass 1: trace this pass's own photons; build the maps.
-    TracedPhotons photons;
-    {
-        const Stopwatch watch(spent.seconds_trace);
-        photons = trace(index);
+    // Pass 1: this pass's own photons and their maps, unless another picture had them.
+    std::shared_ptr<const TracedPass> pass = map_cache_.find(index);
+    size_t maps_memory = map_cache_.memory_bytes();
+    if (!pass) {
+        pass = trace_pass(index, radii, spent);
+        maps_memory += pass->maps.memory_bytes;
+        map_cache_.keep(index, pass);
     }
-    spent.photons_stored = photons.size();
-    spent.caustic_photons = photons[PM_PHOTONS_CAUSTIC].size();
-    Maps maps;
-    {
-        const Stopwatch watch(spent.seconds_build);
-        maps = build_maps(photons, radii);
-    }
+    const Maps &maps = pass->maps;
 
     // Pass 2: camera rays.
     {
         const Stopwatch watch(spent.seconds_gather);
         const PhotonMaps gathers = gathers_of(maps, radii);
-        const CameraPass pass = camera_pass(maps, gathers, index);
-        spent.rays = render_camera_pass(pass, pass_film, error_ ? &*error_ : nullptr, left_out_, &cancel_);
+        const CameraPass rays = camera_pass(view_, maps, gathers, index);
+        spent.rays = render_camera_pass(rays, pass_film, error_ ? &*error_ : nullptr, left_out_, &cancel_);
     }
 
     // Keep the photons for those who ask, and add up what the pass took.
     const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
-                          pass_film.memory_bytes() + maps.memory_bytes + (coverage_ ? coverage_->memory_bytes() : 0) +
+                          pass_film.memory_bytes() + maps_memory + (coverage_ ? coverage_->memory_bytes() : 0) +
                           (error_ ? error_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
     total.photons_emitted += (radii.indirect > 0 ? counts_.global : 0) + (radii.caustic > 0 ? counts_.caustic : 0);
-    total.photons_stored += spent.photons_stored;
-    total.caustic_photons += spent.caustic_photons;
+    total.photons_stored += pass->photons_stored;
+    total.caustic_photons += pass->caustic_photons;
     total.rays += spent.rays;
-    total.rays.rays += photons.rays;
-    total.balance += photons.balance;
+    total.rays.rays += pass->photons.rays;
+    total.balance += pass->photons.balance;
     if (film_.passes() == 0) {
         total.radius_first = radii.indirect;
         total.caustic_radius_first = radii.caustic;
@@ -283,7 +303,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     total.seconds_trace += spent.seconds_trace;
     total.seconds_build += spent.seconds_build;
     total.seconds_gather += spent.seconds_gather;
-    if (settings_.keep_photons) photons_ = std::move(photons.photons);
+    if (settings_.keep_photons) last_pass_ = pass;
     last_radii_ = radii;
 }
 

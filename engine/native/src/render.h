@@ -9,6 +9,7 @@
 #include "camera.h"
 #include "camera_pass.h"
 #include "film.h"
+#include "map_cache.h"
 #include "photon_trace.h"
 #include "plan.h"
 
@@ -51,6 +52,11 @@ class Render {
     Render(Scene &scene, const Lights &lights, const Emission &emission, const Camera &camera,
            const RenderSettings &settings);
 
+    /// Begins another picture, seen by another camera: counts and radii stay those chosen for the first one.
+    void set_camera(const Camera &camera);
+    /// Keeps pass 1 of the earliest passes in so many bytes, for other pictures; at first none.
+    void keep_maps(size_t bytes) { map_cache_.set_limit(bytes); }
+
     /// Renders a pass, a function of scene, camera, settings and index alone, and adds it to the film.
     /// @throws Cancelled after cancel(); the film then holds the passes finished before
     void render_pass(uint32_t index);
@@ -73,7 +79,10 @@ class Render {
     const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
     /// Photons of the last finished pass, if they are kept.
-    const std::vector<Photon> &photons(pm_photon_kind kind) const { return photons_[kind]; }
+    const std::vector<Photon> &photons(pm_photon_kind kind) const {
+        static const std::vector<Photon> none;
+        return last_pass_ ? last_pass_->photons[kind] : none;
+    }
     /// Irradiance at a point from photons like those of a kind, by that kind's radius.
     Vec3 irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const;
     PhotonMap map_of(const std::vector<Photon> &photons) const;
@@ -82,14 +91,6 @@ class Render {
     /// Kernel radii of a pass; 0 where there is no such map.
     struct Radii {
         float indirect = 0, caustic = 0;
-    };
-
-    /// What pass 2 asks of a pass's photons.
-    struct Maps {
-        PhotonMap global, caustic;
-        std::optional<PhotonImportance> importance;
-        std::optional<ShadowPhotons> shadow_photons;
-        size_t memory_bytes = 0;  ///< at its peak, with the lists that they were built from
     };
 
     bool traces(PhotonPurpose purpose) const;
@@ -101,9 +102,10 @@ class Render {
     void make_plan();
     PilotNoises run_pilot_passes();
     bool may_go_by_paths() const;
-    CameraPass camera_pass(const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
+    CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
+    std::shared_ptr<const TracedPass> trace_pass(uint32_t index, const Radii &radii, RenderStatistics &spent);
     Maps build_maps(TracedPhotons &photons, const Radii &radii) const;
     PhotonImportance importance_of(const TracedPhotons &photons) const;
     PhotonMaps gathers_of(const Maps &maps, const Radii &radii) const;
@@ -113,7 +115,8 @@ class Render {
     Scene &scene_;
     const Lights &lights_;
     const Emission &emission_;
-    Camera camera_;
+    Camera camera_;  ///< that counts and radii are chosen for
+    Camera view_;    ///< of the picture
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
     bool receives_;  ///< whether any surface may scatter light diffusely, so that photons are of use
@@ -127,7 +130,8 @@ class Render {
     std::optional<ErrorEstimate> error_;
     std::vector<bool> left_out_;  ///< tiles that get no more samples
     RenderStatistics statistics_;
-    std::array<std::vector<Photon>, 3> photons_;  ///< by pm_photon_kind
+    MapCache map_cache_;
+    std::shared_ptr<const TracedPass> last_pass_;  ///< if its photons are kept
     Radii last_radii_;
     std::atomic<bool> cancel_ = false;
 };

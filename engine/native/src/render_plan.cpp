@@ -61,8 +61,8 @@ PilotNoises Render::run_pilot_passes() {
         stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
         const Maps maps = build_maps(photons, *first_radii_);
         const PhotonMaps gathers = gathers_of(maps, *first_radii_);
-        by_photons.add(camera_pass(maps, gathers, index), &cancel_);
-        CameraPass paths = camera_pass(maps, gathers, index);
+        by_photons.add(camera_pass(camera_, maps, gathers, index), &cancel_);
+        CameraPass paths = camera_pass(camera_, maps, gathers, index);
         paths.indirect = Indirect::paths;
         by_paths.add(paths, &cancel_);
     }

@@ -312,6 +312,19 @@ void test_any_shader_renders(Checks &checks, pm_device *device) {
         std::vector<float> pixels(size_t{4} * 64);
         checks.that(pm_render_read(render.get(), PM_PASS_COMBINED, pixels.data(), pixels.size()) == PM_OK, "is read");
         checks.that(all_finite(pixels), "shader " + std::to_string(trial) + " is finite");
+
+        // The same photons from elsewhere, in a picture of another size.
+        pm_camera camera = arrays.camera;
+        camera.transform[3] = 0.6f;
+        camera.resolution[0] = camera.region[2] = 16;
+        camera.resolution[1] = camera.region[3] = 4;
+        checks.that(pm_render_keep_maps(render.get(), trial % 2 == 0 ? 0 : 1 << 20) == PM_OK, pm_last_error());
+        for (uint32_t pass = 0; pass < 3; ++pass) {
+            if (pass == 1) checks.that(pm_render_set_camera(render.get(), &camera) == PM_OK, pm_last_error());
+            checks.that(pm_render_pass(render.get(), pass / 2) == PM_OK, pm_last_error());
+        }
+        checks.that(pm_render_read(render.get(), PM_PASS_COMBINED, pixels.data(), pixels.size()) == PM_OK, "is read");
+        checks.that(all_finite(pixels), "shader " + std::to_string(trial) + " is finite from elsewhere");
     }
 }
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender with a window, with the extension installed from its zip as a user would."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+BUILD = HERE.parents[1] / "build"
+DIST = HERE.parents[1] / "dist"
+ROOT = Path(os.environ.get("BLENDER_ROOT") or BUILD / "blender-trixie")
+SECONDS = 400  #: after which a script has hung
+#: What a crash, a broken callback or a thread that was forgotten writes.
+TROUBLE = ("Traceback", "Error:", "EXCEPTION_ACCESS", "Segmentation", "Writing: /", "Fatal Python", "free'd twice")
+
+
+#: What is worth knowing but no reason to fail: times depend on the machine.
+FIGURES: list[str] = []
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    for line in FIGURES:
+        terminalreporter.write_line(line)
+
+
+@dataclass(frozen=True)
+class Blender:
+    """A Blender in a system of its own, with a home that is thrown away."""
+
+    home: Path
+
+    def call(self, *command: str) -> subprocess.CompletedProcess[str]:
+        """Run a command there."""
+        return subprocess.run(
+            ["bash", HERE / "run.sh", ROOT, f"/{self.home.relative_to(ROOT)}", "timeout", str(SECONDS), *command],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=SECONDS + 60,
+        )
+
+    def run(self, script: str) -> dict:
+        """Run a script of this folder in the window; its screenshots go to build/gui.
+
+        :return: what it left in driver.results.
+        """
+        results = self.home / "results.json"
+        results.unlink(missing_ok=True)
+        for path in HERE.glob("*.py"):
+            shutil.copy(path, self.home)
+        window = ("--window-geometry", "0", "0", "1280", "800", "--gpu-backend", "opengl")
+        ran = self.call("blender", *window, "--python-exit-code", "4", "--python", script)
+        pictures = BUILD / "gui"
+        pictures.mkdir(parents=True, exist_ok=True)
+        for path in self.home.glob("*.png"):
+            shutil.move(path, pictures / path.name)
+        assert ran.returncode == 0, ran.stdout
+        assert not any(trouble in ran.stdout for trouble in TROUBLE), ran.stdout
+        return json.loads(results.read_text())
+
+
+@pytest.fixture(scope="session")
+def blender() -> Iterator[Blender]:
+    """Blender with the extension."""
+    assert (ROOT / ".ready").exists(), "run `make test-gui`"
+    (archive,) = DIST.glob("photon_maps-*-linux-x64.zip")
+    home = Path(tempfile.mkdtemp(prefix="home-", dir=ROOT / "tmp"))
+    shutil.copy(archive, home)
+    made = Blender(home)
+    install = ("extension", "install-file", "--repo", "user_default", "--enable", archive.name)
+    installed = made.call("blender", "--command", *install)
+    assert installed.returncode == 0, installed.stdout
+    yield made
+    shutil.rmtree(home)
