@@ -153,8 +153,8 @@ void run(const char *path) {
     const Lights lights(scene, {ceiling_lamp()}, {});
     const Emission emission(scene, lights);
     const auto pass = [&](int threads) {
-        return trace_photons(scene, emission, {PhotonPurpose::global, 0, photon_count, max_bounces, seed, threads},
-                             nullptr);
+        return trace_photons(scene, emission,
+                             {PhotonPurpose::global, 0, photon_count, max_bounces, seed, threads, true}, nullptr);
     };
     const Recording recorded = rays_of(pass, *embree);
     const auto rays = static_cast<double>(recorded.rays.size());

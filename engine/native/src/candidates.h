@@ -77,7 +77,7 @@ class CandidateTest {
                        (load(&photons_.z[i]) - p.z) * inverse_radius_};
         const Float8 distance_squared = d.x * d.x + d.y * d.y + d.z * d.z, height = dot(d, n);
         mask &= (distance_squared < 1) & (abs(height) < plane_tolerance);
-        if (bytes(mask) == 0) return false;
+        if (!any(mask)) return false;
 
         // On the same side of the same surface, and not behind an edge of it.
         mask &= dot(unpack_normals(load(&photons_.normal[i])), n) > normal_tolerance * 127;

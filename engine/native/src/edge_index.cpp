@@ -48,8 +48,7 @@ EdgeIndex::EdgeIndex(std::vector<FeatureEdge> edges, float max_radius)
     if (!(max_radius > 0)) throw std::invalid_argument("the largest kernel radius must be positive");
     if (edges_.empty()) return;
 
-    // 1. The cell: twice the radius, or more where long edges would pass too many.
-    constexpr double entries_per_piece = 12;
+    // 1. The cell: the radius, or more where edges would pass too many.
     double extent = 0;
     for (const FeatureEdge &edge : edges_) {
         extent = std::max({extent, double{max_component(abs(edge.a))}, double{max_component(abs(edge.b))}});
@@ -57,10 +56,12 @@ EdgeIndex::EdgeIndex(std::vector<FeatureEdge> edges, float max_radius)
     const auto entries = [&](double cell) {
         double pieces = 0;
         for (const FeatureEdge &edge : edges_) pieces += 1 + length(edge.b - edge.a) / cell;
-        return pieces * entries_per_piece;
+        const double reach = 2 * double{max_radius} / cell;  // a piece and what is near it, in cells along and across
+        return pieces * (2 + reach) * (1 + reach) * (1 + reach);
     };
-    double cell = 2 * double{max_radius};
-    while (entries(cell) > std::max(max_entries, 2 * entries_per_piece * static_cast<double>(edges_.size()))) cell *= 2;
+    constexpr double bearable_entries = 24;  // of an edge
+    double cell = double{max_radius};
+    while (entries(cell) > std::max(max_entries, bearable_entries * static_cast<double>(edges_.size()))) cell *= 2;
     // Cell numbers fit into 64 bits.
     cell = std::max(cell, (extent + max_radius) * 1e-15);
     inverse_cell_ = 1 / cell;

@@ -30,6 +30,9 @@ class FixedVector {
     bool full() const { return size_ == capacity; }
     /// The list must not be full.
     T &emplace_back() { return *std::construct_at(data() + size_++); }
+    /// The list must not be empty.
+    void pop_back() { --size_; }
+    void clear() { size_ = 0; }
     T &operator[](size_t i) { return data()[i]; }
     std::span<T> values() { return {data(), size_}; }
     std::span<const T> values() const { return {std::launder(reinterpret_cast<const T *>(storage_.data())), size_}; }

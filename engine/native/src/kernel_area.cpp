@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace photon_maps {
 
@@ -83,7 +84,7 @@ bool is_along(const Barrier &barrier, const Barrier &other) {
 
 /// Clips the line from a to b to the unit disc and adds what is left as a barrier.
 /// @param tolerance distance below which rounding decides on which side of the line the centre lies
-void add_barrier(Point2<double> a, Point2<double> b, double tolerance, std::vector<Barrier> &barriers) {
+void add_barrier(Point2<double> a, Point2<double> b, double tolerance, KernelRegion::Barriers &barriers) {
     const double length = std::sqrt(dot(b - a, b - a));
     if (!(length > 0)) return;
     Point2<double> along = (b - a) * (1 / length);
@@ -108,8 +109,8 @@ void add_barrier(Point2<double> a, Point2<double> b, double tolerance, std::vect
     if (!(to - from > 1e-6 * (distance + std::max(std::abs(from), std::abs(to))))) return;
     const Point2<double> foot{along.y * distance, -along.x * distance};
     const Point2<double> start = foot + along * from, end = foot + along * to;
-    barriers.push_back({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(end.x),
-                        static_cast<float>(end.y)});
+    barriers.emplace_back() = {static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(end.x),
+                               static_cast<float>(end.y)};
 }
 
 /// A barrier's line: all points whose product with `inverse` is 1.
@@ -275,8 +276,8 @@ KernelRegion::KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Ke
         const size_t before = barriers_.size();
         add(edges.edge(feet[f]));
         if (barriers_.size() == before) continue;
-        const std::span others(barriers_.begin(), before);
-        if (std::ranges::any_of(others, [&](const Barrier &other) { return is_along(barriers_.back(), other); }))
+        const std::span<const Barrier> others = barriers().first(before);
+        if (std::ranges::any_of(others, [&](const Barrier &other) { return is_along(barriers_[before], other); }))
             barriers_.pop_back();
     }
     is_crowded_ = barriers_.size() > max_barriers;
@@ -299,12 +300,12 @@ void KernelRegion::measure(const Kernel &kernel) {
     const float full_wedge = unit.wedge(1);
     std::optional<float> lost;
     if (barriers_.size() == 1) {
-        const Line line(barriers_[0]);
+        const Line line(barriers()[0]);
         lost = lost_beyond(line, line.a, line.b, full_wedge, unit);
     } else if (barriers_.size() == 2) {
-        lost = lost_to_pair(barriers_, full_wedge, unit);
+        lost = lost_to_pair(barriers(), full_wedge, unit);
     }
-    if (!lost) lost = lost_to_all(barriers_, full_wedge, unit);
+    if (!lost) lost = lost_to_all(barriers(), full_wedge, unit);
     share_ = 1 - *lost / (2 * pi * full_wedge);
 
     // A centre walled in on all sides lies on the seam of faces that meet without being joined: no surface ends there.

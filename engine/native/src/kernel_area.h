@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "edge_index.h"
 #include "filter.h"
+#include "fixed_vector.h"
 
 namespace photon_maps {
 
@@ -43,7 +43,8 @@ class KernelRegion {
     /// @throws std::invalid_argument if the kernel is larger than `edges` was built for
     KernelRegion(const EdgeIndex &edges, Vec3 p, Vec3 normal, const Kernel &kernel);
 
-    /// Cuts the unit disc by given barriers, which may be directed either way; they are clipped to it.
+    /// Cuts the unit disc by given barriers, no more than max_barriers, which may be directed either way; they are
+    /// clipped to it.
     KernelRegion(std::span<const Barrier> barriers, const Kernel &kernel);
 
     /// Share of the kernel's integral that remains: above 0, up to 1.
@@ -53,12 +54,15 @@ class KernelRegion {
     bool is_crowded() const { return is_crowded_; }
 
     /// The barriers within the disc; coordinates are along Frame(normal).x and .y.
-    std::span<const Barrier> barriers() const { return barriers_; }
+    std::span<const Barrier> barriers() const { return barriers_.values(); }
+
+    /// One more than can be measured tells that there are too many.
+    using Barriers = FixedVector<Barrier, max_barriers + 1>;
 
   private:
     void measure(const Kernel &kernel);
 
-    std::vector<Barrier> barriers_;
+    Barriers barriers_;
     float share_ = 1;
     bool is_crowded_ = false;
 };

@@ -64,8 +64,10 @@ Vec3 area_radiance(const Lamp &lamp, float tangent) {
     return full * static_cast<float>(std::max(0.0, slats));
 }
 
-/// Tangent of the angle between unit vectors, exact for small angles too.
-float tangent_between(Vec3 a, Vec3 b) { return length(cross(a, b)) / dot(a, b); }
+Vec3 area_radiance(const Lamp &lamp, Vec3 direction, Vec3 normal) {
+    if (lamp.spread >= pi) return area_radiance(lamp, 0);                                   // the same at all angles
+    return area_radiance(lamp, length(cross(direction, normal)) / dot(direction, normal));  // exact for small ones too
+}
 
 namespace {
 
@@ -180,8 +182,8 @@ std::optional<LightSample> sample_area(const Lamp &lamp, Vec3 position, float u,
     const float cosine = dot(direction, axes.z);
     if (!(cosine > 0)) return {};
     const float pdf = area_pdf(lamp, solid_angle, squared, cosine);
-    return LightSample{direction, distance * shadow_end, area_radiance(lamp, tangent_between(direction, axes.z)) / pdf,
-                       pdf, lamp.visibility};
+    return LightSample{direction, distance * shadow_end, area_radiance(lamp, direction, axes.z) / pdf, pdf,
+                       lamp.visibility};
 }
 
 std::optional<LampHit> meet_area(const Lamp &lamp, Vec3 origin, Vec3 direction) {
@@ -201,7 +203,7 @@ std::optional<LampHit> meet_area(const Lamp &lamp, Vec3 origin, Vec3 direction) 
         is_ellipse
             ? 0
             : SphericalRectangle(origin, lamp.transform.origin, axes.x, axes.y, lamp.width, lamp.height).solid_angle();
-    return LampHit{0, distance, area_radiance(lamp, tangent_between(direction, z)),
+    return LampHit{0, distance, area_radiance(lamp, direction, z),
                    area_pdf(lamp, solid_angle, distance * distance, cosine), lamp.visibility};
 }
 

@@ -28,8 +28,9 @@ std::optional<LampHit> meet_lamp(const Lamp &lamp, Vec3 origin, Vec3 direction);
 bool is_area(const Lamp &lamp);
 /// Of an area lamp.
 float area(const Lamp &lamp);
-/// Radiance of an area lamp at an angle to its normal whose tangent is given.
+/// Radiance of an area lamp at an angle to its normal: by the tangent, or between unit vectors.
 Vec3 area_radiance(const Lamp &lamp, float tangent);
+Vec3 area_radiance(const Lamp &lamp, Vec3 direction, Vec3 normal);
 /// Radiant intensity of a point or spot lamp on its axis, W/sr.
 Vec3 intensity(const Lamp &lamp);
 /// 1 - cos of the cone about -z that holds all directions of a point or spot lamp.
@@ -39,7 +40,5 @@ float attenuation(const Lamp &lamp, Vec3 direction);
 /// 1 - cos of half the sun's angle, and the radiance of its disk.
 float sun_cone(const Lamp &lamp);
 Vec3 sun_radiance(const Lamp &lamp);
-/// Tangent of the angle between unit vectors, exact for small angles too.
-float tangent_between(Vec3 a, Vec3 b);
 
 }  // namespace photon_maps

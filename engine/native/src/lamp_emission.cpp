@@ -29,6 +29,7 @@ DirectionAim aim_from_point(const Lamp &lamp, std::span<const Caster> casters) {
 
 /// What the photons of one point of an area lamp are aimed at.
 DirectionAim aim_from_area(const Lamp &lamp, Vec3 origin, std::span<const Caster> casters) {
+    if (casters.empty()) return DirectionAim(0);
     const Vec3 axis = -normalize(lamp.transform.z);
     DirectionAim aim(widest_aim(one_minus_cos(std::min(lamp.spread, pi) / 2)));
     for (const Caster &caster : casters) {
@@ -89,7 +90,7 @@ PhotonEmission emit_from_area(const Lamp &lamp, std::span<const Caster> casters,
     photon.ray = {origin + nudge, *direction};
     if (!(cosine > 0)) return photon;
     const float pdf = aim.pdf(*direction, cosine / (pi * sine * sine));
-    photon.flux = area_radiance(lamp, tangent_between(*direction, -z)) * (area(lamp) * cosine / pdf);
+    photon.flux = area_radiance(lamp, *direction, -z) * (area(lamp) * cosine / pdf);
     return photon;
 }
 

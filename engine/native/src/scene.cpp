@@ -214,28 +214,42 @@ bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {
 
     // A mesh of a single use is a geometry of the top scene; others are met through their instance.
     const uint32_t instance = rh.hit.instance == rtc::invalid_id ? rh.hit.geometry : rh.hit.instance;
-    hit = surface_point(instance, rh.hit.primitive, rh.hit.u, rh.hit.v, ray.direction);
+    find_point(instance, rh.hit.primitive, rh.hit.u, rh.hit.v, ray.direction, hit);
     hit.distance = rh.ray.tfar;
     return true;
 }
 
-SurfacePoint Scene::surface_point(uint32_t instance_index, uint32_t triangle, float u, float v, Vec3 travel) const {
-    SurfacePoint hit;
+SurfacePoint Scene::surface_point(uint32_t instance, uint32_t triangle, float u, float v, Vec3 travel) const {
+    SurfacePoint point;
+    find_point(instance, triangle, u, v, travel, point);
+    point.distance = 0;
+    return point;
+}
+
+void Scene::find_point(uint32_t instance_index, uint32_t triangle, float u, float v, Vec3 travel,
+                       SurfacePoint &hit) const {
     hit.instance = instance_index;
     hit.triangle = triangle;
     hit.u = u;
     hit.v = v;
-    hit.distance = 0;
     const Instance &instance = instances[instance_index];
     const Mesh &mesh = meshes[instance.mesh];
+    // Large meshes are out of the cache: their normals come while the vertices are awaited.
+    if (!mesh.corner_normals.empty()) __builtin_prefetch(&mesh.corner_normals[3 * size_t{triangle}]);
     const uint32_t slot = mesh.slots.empty() ? 0 : mesh.slots[triangle];
     hit.material = &materials[slot_materials[instance.first_slot + slot]];
 
     // Position from the triangle, not from the distance: its error does not grow with the ray's length.
-    const WorldTriangle stored = stored_triangle(mesh, triangle), t = to_world(instance, mesh, stored);
-    const Vec3 ab = t.b - t.a, ac = t.c - t.a;
-    hit.position = t.a + ab * u + ac * v;
-    hit.error = rounding_error(instance, mesh, stored);
+    const Triangle &corners = mesh.triangles[triangle];
+    Vec3 a = mesh.vertices[corners[0]], b = mesh.vertices[corners[1]], c = mesh.vertices[corners[2]];
+    hit.error = rounding_error(instance, mesh, {a, b, c});
+    if (mesh.use_count != 1) {
+        a = instance.transform.point(a);
+        b = instance.transform.point(b);
+        c = instance.transform.point(c);
+    }
+    const Vec3 ab = b - a, ac = c - a;
+    hit.position = a + ab * u + ac * v;
 
     // Geometric normal towards the ray; a triangle so thin that it has none takes the ray's own direction.
     const Vec3 n = cross(ab, ac);
@@ -248,15 +262,14 @@ SurfacePoint Scene::surface_point(uint32_t instance_index, uint32_t triangle, fl
     // Shading normal on the same side.
     hit.shading_normal = hit.normal;
     if (!mesh.corner_normals.empty()) {
-        const Vec3 *corners = &mesh.corner_normals[3 * size_t{triangle}];
-        const Vec3 world_normal = instance.transform.normal(corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v);
+        const Vec3 *normals = &mesh.corner_normals[3 * size_t{triangle}];
+        const Vec3 world_normal = instance.transform.normal(normals[0] * (1 - u - v) + normals[1] * u + normals[2] * v);
         const float squared = length_squared(world_normal);
         if (squared > 0) {
             hit.shading_normal = world_normal / std::sqrt(squared);
             if (dot(hit.shading_normal, hit.normal) < 0) hit.shading_normal = -hit.shading_normal;
         }
     }
-    return hit;
 }
 
 Vec3 Scene::transmittance(const Ray &ray, uint64_t &rays) const {

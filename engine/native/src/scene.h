@@ -158,6 +158,8 @@ class Scene {
     };
     using SceneHandle = std::unique_ptr<std::remove_pointer_t<rtc::Scene>, SceneReleaser>;
 
+    /// Fills all of a point but its distance.
+    void find_point(uint32_t instance, uint32_t triangle, float u, float v, Vec3 travel, SurfacePoint &point) const;
     void count_uses();
     void move_single_uses_to_world();
     void find_bounds();

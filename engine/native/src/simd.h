@@ -60,6 +60,13 @@ using Int8 = int32_t __attribute__((vector_size(32)));  ///< of a comparison: -1
     return uint64_t{static_cast<uint32_t>(placed[0])} | uint64_t{static_cast<uint32_t>(placed[4])} << 32;
 }
 
+/// Returns whether a mask is set in any lane.
+[[gnu::always_inline]] inline bool any(Int8 mask) {
+    using Long4 = int64_t __attribute__((vector_size(32)));
+    const auto pairs = reinterpret_cast<Long4>(mask);
+    return ((pairs[0] | pairs[2]) | (pairs[1] | pairs[3])) != 0;
+}
+
 /// Takes the first set lane out of such bytes, of which one must be set.
 [[gnu::always_inline]] inline uint32_t take_first(uint64_t &bytes) {
     const auto lane = static_cast<uint32_t>(std::countr_zero(bytes)) / 8;

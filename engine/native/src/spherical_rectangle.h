@@ -25,13 +25,13 @@ class SphericalRectangle {
             z0_ = -z0_;
         }
 
-        // Normals of the planes through the eye and each side; angles between them; the solid angle is their excess.
-        const Vec3 v00{x0_, y0_, z0_}, v01{x0_, y1_, z0_}, v10{x1_, y0_, z0_}, v11{x1_, y1_, z0_};
-        const Vec3 n0 = normalize(cross(v00, v10)), n1 = normalize(cross(v10, v11));
-        const Vec3 n2 = normalize(cross(v11, v01)), n3 = normalize(cross(v01, v00));
-        const auto angle = [](Vec3 a, Vec3 b) { return std::acos(std::clamp(-dot(a, b), -1.0f, 1.0f)); };
-        b0_ = n0.z;
-        b1_ = n2.z;
+        // The planes through the eye and each side: of their normals the z, which alone tells the angles between two of
+        // them, for each is at right angles to x or to y. The solid angle is the excess of the angles.
+        const auto normal_z = [&](float side) { return side / std::sqrt(z0_ * z0_ + side * side); };
+        const float n0 = -normal_z(y0_), n1 = normal_z(x1_), n2 = normal_z(y1_), n3 = -normal_z(x0_);
+        const auto angle = [](float a, float b) { return std::acos(std::clamp(-a * b, -1.0f, 1.0f)); };
+        b0_ = n0;
+        b1_ = n2;
         k_ = 2 * pi - angle(n2, n3) - angle(n3, n0);
         solid_angle_ = angle(n0, n1) + angle(n1, n2) - k_;
     }

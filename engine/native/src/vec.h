@@ -45,7 +45,7 @@ constexpr float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; 
 constexpr Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 constexpr float length_squared(Vec3 a) { return dot(a, a); }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalize(Vec3 a) { return a / length(a); }
+inline Vec3 normalize(Vec3 a) { return a * (1 / length(a)); }
 constexpr float max_component(Vec3 a) { return std::max(a.x, std::max(a.y, a.z)); }
 constexpr float average(Vec3 a) { return (a.x + a.y + a.z) / 3; }
 constexpr Vec3 min(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
