@@ -21,6 +21,7 @@ from engine.chart.report import report
 from engine.chart.words import count, duration, percent
 from engine.settings import Estimate, Integrator, RenderSettings, Stop
 from tests.shapes import camera, lamp, quad, scene
+from tests.test_indirect_choice import AUTOMATIC, field
 
 
 def power_law(factor: float, slope: float, doublings: int = 6, seconds: float = 2.0) -> Curve:
@@ -195,3 +196,12 @@ def test_words():
                                                                     "2 h 5 min"]  # fmt: skip
     assert [percent(e) for e in (0.00523, 0.0312, 0.241)] == ["0.52 %", "3.1 %", "24 %"]
     assert [count(n, "pass") for n in (1, 8, 1644)] == ["1 pass", "8 passes", "1,644 passes"]
+
+
+def test_where_paths_are_taken_they_are_charted():
+    base = RenderSettings(**AUTOMATIC, passes=8, stop=Stop.PASSES)
+    chart = ChartJob(Task("Field", field(), base, 8.0)).run()
+    present, paths = (next(row for row in chart.rows if row.variant.name == name) for name in (PRESENT, "Path tracing"))
+    errors = [{point.passes: point.error for point in row.curve.points} for row in (present, paths)]
+    # There nothing is by photons: the two differ by their random numbers.
+    assert errors[0][4] == pytest.approx(errors[1][4], rel=0.2)

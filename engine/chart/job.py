@@ -13,7 +13,7 @@ import numpy as np
 from photon_maps_native import Camera, NativeError, SceneData
 
 from ..session import LoadedScene, Session
-from ..settings import Integrator, RenderSettings, Stop
+from ..settings import RenderSettings, Stop
 from .accuracy import Reference
 from .ladder import PRESENT, Ladder, Size, Variant, build_ladder, loses_light, reference_settings
 from .outcome import Cancelled, Chart, ChartError, FullSize, Row
@@ -157,10 +157,9 @@ class ChartJob:
 
         present = started(Variant(PRESENT, loses_light=loses_light(self._base, seen)))
         present.step(self._step)
-        uses_maps = self._base.integrator == Integrator.PHOTON_MAP
-        radius = size_of(small.pixels, present.session if uses_maps else half).radius
         # The reference has four times the photons, so half the radius.
-        small = replace(small, radius=radius if uses_maps else 2.0 * radius)
+        radius = size_of(small.pixels, present.session).radius or 2.0 * size_of(small.pixels, half).radius
+        small = replace(small, radius=radius)
         ladder = build_ladder(self._base, seen, bool(self._task.data.lights))
         runs = [present, *(started(variant) for variant in ladder.variants[1:])]
         end = self._end(LADDER_END)

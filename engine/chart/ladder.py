@@ -27,6 +27,7 @@ class Size:
     pixels: int  #: that are rendered
     photon_count: int  #: of a pass with the present settings
     radius: float  #: of the first pass with the present settings, scene units; 0: no photon map
+    by_paths: bool = False  #: Automatic has paths bring indirect light
 
 
 @dataclass(frozen=True)
@@ -39,10 +40,14 @@ class Variant:
     radius: float | None = None  #: times the present one; None: chosen as in the present settings
     loses_light: bool = False  #: its error is not only noise and blur
 
+    @property
+    def _is_automatic(self) -> bool:
+        """Whether Automatic may choose what else there is to choose."""
+        return self.photons == 1.0 and self.radius is None and set(self.fields) <= KEPT_BY_AUTOMATIC
+
     def settings(self, base: RenderSettings, size: Size) -> RenderSettings:
         """Return the settings at the picture's full size; what differs from what Automatic chooses is set by hand."""
-        is_kept = self.photons == 1.0 and self.radius is None and set(self.fields) <= KEPT_BY_AUTOMATIC
-        if base.use_auto and not is_kept:
+        if base.use_auto and not self._is_automatic:
             base = replace(base, use_auto=False, photon_count=size.photon_count, radius=size.radius)
         return replace(
             base,
@@ -54,8 +59,11 @@ class Variant:
 
     def small_settings(self, base: RenderSettings, full: Size, small: Size) -> RenderSettings:
         """Return the settings of a small picture with as many photons in a kernel as the full one has."""
+        made = self.settings(base, small)
+        if base.use_auto and full.by_paths and self._is_automatic:
+            return replace(made, pass_offset=0)  # there, too, the plan takes paths
         return replace(
-            self.settings(base, small),
+            made,
             use_auto=False,
             pass_offset=0,
             photon_count=max(1, round(self.photons * small.photon_count)),

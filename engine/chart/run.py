@@ -12,6 +12,7 @@ import numpy as np
 
 from ..passes import Pass
 from ..session import Session
+from ..settings import Indirect
 from .accuracy import Reference
 from .curve import Curve, Point, usable
 from .ladder import Size, Variant
@@ -143,4 +144,5 @@ def size_of(pixels: int, session: Session) -> Size:
     """Return what photons and radius are at a size, from a session that has rendered a pass."""
     statistics = session.statistics()
     count = statistics.photon_count or statistics.caustic_photon_count
-    return Size(pixels, count, statistics.radius_first or statistics.caustic_radius_first)
+    radius = statistics.radius_first or statistics.caustic_radius_first
+    return Size(pixels, count, radius, statistics.indirect == Indirect.PATHS)

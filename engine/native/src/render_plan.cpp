@@ -121,8 +121,11 @@ void Render::make_plan() {
     const Plan &plan = takes_paths ? by_paths : by_photons;
     pilot_noise_ = takes_paths ? noises.paths : noises.photons;
     counts_ = plan.counts;
-    first_radii_->indirect *= takes_paths ? 0 : plan.global_radius;
-    if (takes_paths) indirect_ = Indirect::paths;
+    first_radii_->indirect *= plan.global_radius;
+    if (!takes_paths) return;
+    counts_.global = usual.global;  // what a global map would have
+    first_radii_->indirect = 0;
+    indirect_ = Indirect::paths;
 }
 
 /// Whether nothing but the light of diffuse bounces is asked of the global map's photons.
