@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from benchmarks.chart.analysis import TARGETS, Crossing, Curve, price, time_to
@@ -122,7 +122,7 @@ def scene_table(of_scene: Mapping[str, Sequence[Row]]) -> Table:
 
 def where_others_lead(rows: Rows) -> str:
     """Return in a sentence or two in which scenes another engine comes to the same error sooner."""
-    behind, ahead, untold = [], [], []
+    behind, ahead, untold, sooner = [], [], [], []
     for scene, of_scene in rows.items():
         default = of_scene.get(DEFAULT.name)
         others = {name: here for name, here in of_scene.items() if name in RIVALS}
@@ -133,6 +133,8 @@ def where_others_lead(rows: Rows) -> str:
         best = min(ratios, key=lambda name: ratios[name])
         entry = (scene, best, ratios[best])
         (behind if ratios[best] < 1 / TELLING else ahead if ratios[best] > TELLING else untold).append(entry)
+        if ratios[best] >= 1 / TELLING:
+            sooner += [(scene, *lead) for lead in leads(default, others)]
     sentences = []
     if behind:
         named = ", ".join(f"{scene} ({name}, {1 / ratio:.1f} times)" for scene, name, ratio in behind)
@@ -144,7 +146,19 @@ def where_others_lead(rows: Rows) -> str:
         span = f"{ratios[0]:.2g} to {ratios[-1]:.2g}" if len(ratios) > 1 else f"{ratios[0]:.2g}"
         scenes = ", ".join(scene for scene, _, _ in ahead)
         sentences.append(f"In {scenes} the photon map is the faster, by {span} times.")
+    if sooner:
+        named = ", ".join(f"{scene} ({name}, {ratio:.1f} times)" for scene, name, ratio in sooner)
+        sentences.append(f"On the way there, at {SUMMARY_ERROR}, another engine is still ahead in {named}.")
     return " ".join(sentences)
+
+
+def leads(default: Sequence[Row], others: Mapping[str, Sequence[Row]]) -> Iterator[tuple[str, float]]:
+    """Yield the engines that come to the summary's error sooner than the default method, and how many times."""
+    ours = time_to(curve(default), TARGETS[SUMMARY_ERROR])
+    for name, here in others.items():
+        theirs = time_to(curve(here), TARGETS[SUMMARY_ERROR])
+        if ours and theirs and theirs.seconds * TELLING < ours.seconds:
+            yield name, ours.seconds / theirs.seconds
 
 
 def left_out(rows: Rows, failures: Sequence[str]) -> str:

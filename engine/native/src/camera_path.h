@@ -17,6 +17,9 @@
 //   L (S|D)* D S* D S* E    global map, at the first D from the    the path goes on
 //                           eye
 //
+// Where paths bring the light of diffuse bounces (Indirect::paths) the last row is theirs, as in path tracing, and the
+// caustic map is asked at every D of the path. So it is in a final gather, until it ends and asks both maps for all.
+//
 // Straight passage through transparent surfaces is no scattering: shadow rays, photons and paths all pass.
 //
 // Refraction scales radiance, not flux, where a path enters or leaves a body. A sheet that encloses nothing stands for
