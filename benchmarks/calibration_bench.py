@@ -7,19 +7,15 @@ mean where that is more, and leave out the worst thousandth of the pixels; the r
 
 from __future__ import annotations
 
-import argparse
-import csv
 import math
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
-from multiprocessing import get_context
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib import pyplot
 
+from benchmarks.campaign import OUT, run
 from benchmarks.chart.methods import DEFAULT
 from benchmarks.chart.scenes import SCENES, Reference
 from engine.passes import Pass
@@ -27,7 +23,6 @@ from engine.session import LEAST_PASSES_FOR_ERROR
 from engine.settings import Stop
 from tests.shapes import Picture
 
-OUT = Path("build/chart")
 TARGETS = (0.05, 0.02, 0.01)
 WANTED = (0.5, 1.5)  #: true error over the estimate
 DROPPED = 1000  #: one pixel of so many, the worst
@@ -113,23 +108,7 @@ def draw(rows: list[Row]) -> None:
 
 def main() -> int:
     """Measure the scenes asked for; return the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
-    parser.add_argument("--limit", type=float, default=120.0, help="CPU-seconds for a scene")
-    parser.add_argument("--processes", type=int, default=2, help="scenes at a time")
-    asked = parser.parse_args()
-    OUT.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    with ProcessPoolExecutor(asked.processes, mp_context=get_context("spawn")) as workers:
-        for future in [workers.submit(measure, name, asked.limit) for name in asked.scenes]:
-            found = future.result()
-            rows += found
-            for row in found:
-                print(row.line(), flush=True)
-    with (OUT / "calibration.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(asdict(rows[0])))
-        writer.writeheader()
-        writer.writerows(map(asdict, rows))
+    rows = run(__doc__, 120.0, measure, OUT / "calibration.csv")
     draw(rows)
     told = [row for row in rows if row.reference_noise < LARGEST_NOISE * row.target]
     kept = sum(WANTED[0] <= row.ratio <= WANTED[1] for row in told)

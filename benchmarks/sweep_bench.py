@@ -7,18 +7,14 @@ expected; final gather and path tracing are tried too. Writes sweep.csv to build
 
 from __future__ import annotations
 
-import argparse
-import csv
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import product
-from multiprocessing import get_context
-from pathlib import Path
 
 from photon_maps_native import SceneData, Statistics
 
+from benchmarks.campaign import OUT, run
 from benchmarks.chart.errors import LEAST_SHARE
 from benchmarks.chart.measure import Measured
 from benchmarks.chart.methods import DEFAULT, GATHER
@@ -26,7 +22,6 @@ from benchmarks.chart.scenes import PATHS, SCENES, Scene
 from engine.settings import Estimate, RenderSettings
 from tests.reference_scenes import relative_mean_square_error
 
-OUT = Path("build/chart")
 TARGET = 4e-4  #: relMSE of an error of 2 %
 PHOTONS = (0.25, 1.0, 4.0)
 RADII = (0.6, 1.0, 1.6)
@@ -79,7 +74,7 @@ def seconds_to_target(scene: Scene, data: SceneData, settings: RenderSettings, l
     return float("inf"), render
 
 
-def measure(name: str, limit: float) -> Row:
+def measure(name: str, limit: float) -> list[Row]:
     """Render a scene with nothing set, then by hand as long as that took."""
     scene = SCENES[name]
     data = scene.data()
@@ -89,26 +84,12 @@ def measure(name: str, limit: float) -> Row:
         seconds, _ = seconds_to_target(scene, data, settings, best)
         if seconds < best:
             best, best_name = seconds, label
-    return Row(name, automatic, best, best_name)
+    return [Row(name, automatic, best, best_name)]
 
 
 def main() -> int:
     """Measure the scenes asked for; return the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
-    parser.add_argument("--limit", type=float, default=60.0, help="CPU-seconds for a render")
-    parser.add_argument("--processes", type=int, default=2, help="scenes at a time")
-    asked = parser.parse_args()
-    OUT.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    with ProcessPoolExecutor(asked.processes, mp_context=get_context("spawn")) as workers:
-        for future in [workers.submit(measure, name, asked.limit) for name in asked.scenes]:
-            rows.append(future.result())
-            print(rows[-1].line(), flush=True)
-    with (OUT / "sweep.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(asdict(rows[0])))
-        writer.writeheader()
-        writer.writerows(map(asdict, rows))
+    rows = run(__doc__, 60.0, measure, OUT / "sweep.csv")
     told = [row for row in rows if row.automatic < float("inf")]
     kept = sum(row.ratio <= WANTED for row in told)
     print(f"{kept} of {len(told)} within {WANTED} of the best by hand; {len(rows) - len(told)} did not come to 2 %")

@@ -17,7 +17,8 @@ from engine.export.camera import read_camera
 from engine.export.scene import read_contents
 from engine.messages import Messages
 from engine.user_settings import render_settings
-from engine.viewport_worker import Picture, Request, ViewportWorker
+from engine.viewport_rendering import Picture, Request
+from engine.viewport_worker import ViewportWorker
 from operators.demo_caustics import caustics
 from operators.demo_everything import everything
 from operators.demo_scenes import room

@@ -115,3 +115,7 @@ class RenderSettings:
     def stop_error(self) -> float:
         """The error at which parts of the picture get no further samples; 0 where another rule stops the render."""
         return self.error_target if self.stop == Stop.ERROR else 0.0
+
+
+#: What Automatic chooses beside the defaults: caustics of every sharpness are served by radii that are chosen last.
+AUTOMATIC: dict[str, object] = {"use_auto": True, "estimate": Estimate.ADAPTIVE}

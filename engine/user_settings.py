@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import bpy
 
-from .settings import BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
+from .settings import AUTOMATIC, BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
 
 #: What Automatic chooses by itself.
 CHOSEN = (
@@ -19,8 +19,6 @@ KEPT = (
     *("integrator", "max_bounces", "use_caustics", "use_indirect", "seed", "use_progressive", "stop", "passes"),
     *("pass_offset", "time_limit", "error_target", "pixel_filter", "pixel_filter_width"),
 )
-#: What Automatic chooses beside the defaults: caustics of every sharpness are served by radii that are chosen last.
-AUTOMATIC = {"use_auto": True, "estimate": Estimate.ADAPTIVE}
 ENUMERATIONS = {
     "integrator": Integrator,
     "estimate": Estimate,

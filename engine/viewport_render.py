@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from .export.kept import Kept
     from .settings import RenderSettings
-    from .viewport_worker import Picture, ViewportWorker
+    from .viewport_rendering import Picture
+    from .viewport_worker import ViewportWorker
 
 WORKER = f"{__package__}.viewport_worker"  #: loaded with the helper by the first viewport
 LOOK_SECONDS = 0.03  #: between two looks whether there is a new picture
@@ -113,7 +114,7 @@ class Viewport:
 
     def _ask(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         from .export.view import read_view
-        from .viewport_worker import Request
+        from .viewport_rendering import Request
 
         camera = read_view(context.space_data, context.region, depsgraph, Messages(), self._reach)
         if not equal(camera, self._camera):

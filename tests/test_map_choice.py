@@ -7,7 +7,7 @@ import pytest
 from photon_maps_native import LightType, diffuse
 
 from engine.map_choice import explain_maps, maps_built
-from engine.settings import Estimate, Integrator, RenderSettings
+from engine.settings import AUTOMATIC, Integrator, RenderSettings
 from tests.reference_scenes import Glass, Metal, substance_material
 from tests.shapes import Picture, camera, lamp, quad, scene, sphere
 
@@ -58,7 +58,7 @@ def test_without_light_there_is_no_map():
     )
 
 
-@pytest.mark.parametrize("fields", [{}, {"use_auto": True, "estimate": Estimate.ADAPTIVE}])
+@pytest.mark.parametrize("fields", [{}, AUTOMATIC])
 def test_a_mirror_that_lights_nothing_makes_no_caustic_map(fields):
     """What it reflects goes up and away."""
     mirror = substance_material(Metal((0.9, 0.9, 0.9)))

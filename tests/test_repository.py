@@ -28,6 +28,7 @@ FLOORS = {
     "engine/messages": 1,
     "engine/session": 1,
     "engine/changes": 1,
+    "engine/viewport_rendering": 1,
     "engine/viewport_worker": 1,
     "engine/summary": 1,
     "engine/properties": 1,

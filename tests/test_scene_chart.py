@@ -19,9 +19,9 @@ from engine.chart.ladder import PRESENT, Size, Variant, build_ladder
 from engine.chart.outcome import TARGETS, Cancelled, ChartError, choices, settings_of
 from engine.chart.report import report
 from engine.chart.words import count, duration, percent
-from engine.settings import Estimate, Integrator, RenderSettings, Stop
+from engine.settings import AUTOMATIC, Estimate, Integrator, RenderSettings, Stop
 from tests.shapes import camera, lamp, quad, scene
-from tests.test_indirect_choice import AUTOMATIC, field
+from tests.test_indirect_choice import field
 
 
 def power_law(factor: float, slope: float, doublings: int = 6, seconds: float = 2.0) -> Curve:

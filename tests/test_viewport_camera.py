@@ -12,7 +12,7 @@ from photon_maps_native import Camera, SceneData
 from engine.passes import Pass
 from engine.session import LoadedScene, Session
 from engine.settings import Estimate, Integrator, RenderSettings
-from engine.viewport_worker import coarse_camera, depends_on_view
+from engine.viewport_rendering import coarse_camera, depends_on_view
 from tests.reference_scenes import CORNELL
 from tests.shapes import box_filtered, camera
 from tests.test_determinism import still_life

@@ -15,7 +15,8 @@ from photon_maps_native import Camera, NativeError
 from photon_maps_native.errors import Status
 
 from engine.settings import RenderSettings
-from engine.viewport_worker import Picture, Request, ViewportWorker, close_all, paused
+from engine.viewport_rendering import Picture, Request
+from engine.viewport_worker import ViewportWorker, close_all, paused
 from tests.shapes import camera
 from tests.test_determinism import still_life
 

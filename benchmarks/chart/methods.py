@@ -10,7 +10,7 @@ from photon_maps_native import SceneData
 from benchmarks.chart.description import settings_with
 from benchmarks.chart.scenes import PATHS, Scene
 from engine.passes import Pass
-from engine.settings import BrdfDirection, Estimate, Filter, Integrator, RenderSettings
+from engine.settings import AUTOMATIC, BrdfDirection, Estimate, Filter, Integrator, RenderSettings
 from tests.shapes import Picture
 
 #: CPU-seconds of the methods that are charted beside other engines, and of the others.
@@ -35,8 +35,6 @@ class Method:
         return settings_with(**(AUTOMATIC | largest | self.fields | changes))
 
 
-#: As the engine renders with Automatic on.
-AUTOMATIC: dict[str, object] = {"use_auto": True, "estimate": Estimate.ADAPTIVE}
 DEFAULT = Method("photon map", seconds=MAIN_SECONDS)
 GATHER: dict[str, object] = {"use_final_gather": True}
 GUIDING: dict[str, object] = {"use_photon_guiding": True}

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a viewport shows of a request: a coarse picture at once, then finer ones from photon maps that are kept.
+
+Knows nothing of Blender, and nothing of threads.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from photon_maps_native import Camera, SceneData
+from photon_maps_native.shader import Input, Op
+
+from .passes import Pass
+from .session import LoadedScene, Session
+from .settings import RenderSettings
+
+COARSE_SECONDS = 0.1  #: that a first picture should take, once there are photon maps
+FINE_SECONDS = 1.0  #: that the step to all pixels may take; before longer ones there are pictures in between
+COARSEST, USUAL = 16, 8  #: pixels of the view across one of a first picture: at most, and while the cost is not known
+SHOW_SECONDS = 0.25  #: between two pictures of the same view
+MAP_BYTES = 256 << 20  #: of photon maps that are kept for other views
+VIEW_INPUTS = {Input.CAMERA_POSITION, Input.WINDOW}
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What is to be seen. Scenes and cameras are told apart as objects: what has not changed must be the same one."""
+
+    scene: SceneData
+    settings: RenderSettings
+    camera: Camera
+
+    def shows_scene_of(self, other: Request | None) -> bool:
+        """Say whether only the camera differs, if anything."""
+        return other is not None and self.scene is other.scene and self.settings == other.settings
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What was rendered so far."""
+
+    pixels: np.ndarray  #: (height, width, 4) float32, rows from the bottom, premultiplied by alpha
+    region: tuple[float, float, float, float]  #: x, y, width and height that it covers, in pixels of the view
+    status: str  #: a line for the user
+
+
+class Rendering:
+    """What a viewport's thread is at; nobody else touches it."""
+
+    def __init__(self, load: Callable, start: Callable) -> None:
+        self._load, self._start = load, start
+        self.request: Request | None = None
+        self.session: Session | None = None
+        self.is_coarse_due = True
+        self._loaded: LoadedScene | None = None
+        self._sees_view = self._has_failed = False
+        self._factor = 1  #: pixels of the view across one of the picture
+        self._pixel_seconds = math.inf  #: that a pixel of a pass takes
+        self._shown = -math.inf  #: when
+
+    @property
+    def is_done(self) -> bool:
+        return self._has_failed or (
+            self.session is not None and not self.is_coarse_due and self._factor == 1 and self.session.progress >= 1.0
+        )
+
+    def follow(self, request: Request) -> None:
+        """Begin what a request asks for, unless it is under way."""
+        before, self.request = self.request, request
+        if before is request:
+            return
+        # Shaders that ask for the view see that of a scene's first picture.
+        if self.session is None or self._sees_view or not request.shows_scene_of(before):
+            self.close()
+            self._has_failed = False
+            self._sees_view = depends_on_view(request.scene)
+            self._loaded = self._load(request.scene)
+            self.session = self._start(self._loaded, request.settings, camera=request.camera, map_bytes=MAP_BYTES)
+        self.is_coarse_due = True
+
+    def step(self) -> bool:
+        """Render a pass.
+
+        :return: False if it was cancelled.
+        """
+        factor = self._coarse_factor() if self.is_coarse_due else self._finer_factor()
+        if self.is_coarse_due or factor != self._factor:
+            self._factor = factor
+            self.session.set_camera(coarse_camera(self.request.camera, factor))
+        if not self.session.step():
+            return False
+        self.is_coarse_due = False
+        statistics = self.session.statistics()
+        _, _, width, height = coarse_camera(self.request.camera, self._factor).region
+        self._pixel_seconds = statistics.seconds_gather / (max(statistics.passes, 1) * width * height)
+        return True
+
+    def _coarse_factor(self) -> int:
+        """Return how coarse a picture must be to be made in no time."""
+        if math.isinf(self._pixel_seconds):
+            return USUAL
+        seconds = self._fine_seconds()
+        return next((f for f in (1, 2, 4, 8) if seconds <= COARSE_SECONDS * f * f), COARSEST)
+
+    def _finer_factor(self) -> int:
+        return max(self._factor // 2, 1) if self._fine_seconds() > FINE_SECONDS else 1
+
+    def _fine_seconds(self) -> float:
+        """Return about how long a pass takes with all pixels."""
+        _, _, width, height = self.request.camera.region
+        return self._pixel_seconds * width * height
+
+    def picture_to_show(self) -> Picture | None:
+        """Return the mean of the passes so far, if it is time to show it."""
+        statistics, now = self.session.statistics(), time.monotonic()
+        if statistics.passes > 1 and not self.is_done and now - self._shown < SHOW_SECONDS:
+            return None
+        self._shown = now
+        x, y, width, height = (edge * self._factor for edge in coarse_camera(self.request.camera, self._factor).region)
+        error = f" | error about {statistics.error:.2%}" if math.isfinite(statistics.error) else ""
+        done = " | done" if self.is_done else ""
+        status = f"Pass {statistics.passes}{error} | {statistics.photons_emitted:,} photons{done}"
+        return Picture(self.session.read(Pass.COMBINED), (x, y, width, height), status)
+
+    def give_up(self) -> None:
+        """Do no more for this request."""
+        self.close()
+        self._has_failed = True
+
+    def close(self) -> None:
+        """Free what the helper holds."""
+        if self.session is not None:
+            self.session.close()
+        if self._loaded is not None:
+            self._loaded.close()
+        self.session = self._loaded = None
+
+
+def coarse_camera(camera: Camera, factor: int) -> Camera:
+    """Return a camera each of whose pixels covers `factor` x `factor` of another's, and all of them."""
+    if factor == 1:
+        return camera
+    width, height = (-(-size // factor) for size in camera.resolution)
+    left, right, bottom, top = camera.window
+    # What the last pixels reach beyond the frame.
+    right = left + (right - left) * width * factor / camera.resolution[0]
+    top = bottom + (top - bottom) * height * factor / camera.resolution[1]
+    x, y, across, up = camera.region
+    first = x // factor, y // factor
+    region = (*first, -(-(x + across) // factor) - first[0], -(-(y + up) // factor) - first[1])
+    return replace(camera, window=(left, right, bottom, top), resolution=(width, height), region=region)
+
+
+def depends_on_view(scene: SceneData) -> bool:
+    """Say whether a shader asks where the camera stands."""
+    return any(
+        op == Op.INPUT and option in VIEW_INPUTS
+        for material in scene.materials
+        for op, option, *_ in material.instructions.tolist()
+    )
