@@ -34,7 +34,7 @@ def _explain_global(settings: RenderSettings, statistics: Statistics) -> str:
         return f"Global map: {statistics.photon_count:,} photons a pass, {radii}."
     if not settings.use_indirect:
         return "No global map: Indirect Light is off."
-    if statistics.indirect == Indirect.PATHS:
+    if statistics.indirect in (Indirect.PATHS, Indirect.ALL_PATHS):
         return "No global map: to the wanted error paths need fewer rays here than photons."
     return "No global map: no light comes from one diffuse surface to another."
 
@@ -45,6 +45,8 @@ def _explain_caustic(settings: RenderSettings, statistics: Statistics) -> str:
         return f"Caustic map: {statistics.caustic_photon_count:,} photons a pass, {radii}."
     if not settings.use_caustics:
         return "No caustic map: Caustics is off."
+    if statistics.indirect == Indirect.ALL_PATHS:
+        return "No caustic map: to the wanted error paths need fewer rays here than photons."
     if statistics.caster_count == 0:
         return "No caustic map: nothing focuses light, for there is no glass, metal or gloss."
     return "No caustic map: no focused light falls on a diffuse surface."

@@ -32,6 +32,7 @@ class Indirect(enum.IntEnum):
     PHOTONS = 0
     GATHER = 1
     PATHS = 2
+    ALL_PATHS = 3
 
 
 class BrdfDirection(enum.IntEnum):

@@ -53,6 +53,37 @@ def test_a_wide_field_is_lit_by_paths() -> None:
     assert explain_maps(picture.settings, statistics)[0].startswith("No global map: to the wanted error paths need")
 
 
+def rough_ball(roughness: float) -> Thing:
+    return Thing(sphere(0.2, 24), material(metal((0.9, 0.9, 0.9), roughness=roughness)), (0.6, -0.1, 0.2))
+
+
+def test_where_paths_find_caustics_easily_the_picture_is_that_of_path_tracing() -> None:
+    rough = field(rough_ball(0.8))
+    picture = Picture(rough, box_filtered(**AUTOMATIC)).run(4)
+    statistics = picture.render.statistics()
+    assert statistics.indirect == Indirect.ALL_PATHS
+    assert maps_built(statistics) == [] and statistics.photons_emitted == 0
+    assert explain_maps(picture.settings, statistics)[1].startswith("No caustic map: to the wanted error paths need")
+    traced = Picture(rough, box_filtered(integrator=Integrator.PATH_TRACING)).run(4)
+    assert np.array_equal(picture.pixels(), traced.pixels())
+    assert picture.pixels(Pass.CAUSTIC).any()
+
+
+@pytest.mark.parametrize(
+    "thing", [rough_ball(0.3), Thing(sphere(0.2, 24), material(mirror((1, 1, 1))), (0.6, -0.1, 0.2))]
+)
+def test_caustics_that_paths_seldom_find_are_left_to_photons(thing: Thing) -> None:
+    picture = Picture(field(thing), box_filtered(**AUTOMATIC)).run(1)
+    assert maps_built(picture.render.statistics()) == ["caustic"]
+
+
+@pytest.mark.parametrize("fields", [{"use_caustics": False}, {"use_indirect": False}])
+def test_light_that_is_switched_off_is_not_brought_by_paths(fields: dict[str, bool]) -> None:
+    pictures = [Picture(field(rough_ball(0.8)), box_filtered(**fields, **each)).run(4) for each in (AUTOMATIC, {})]
+    buffer = Pass.CAUSTIC if "use_caustics" in fields else Pass.SOFT_INDIRECT
+    assert not any(picture.pixels(buffer).any() for picture in pictures)
+
+
 @pytest.fixture(scope="module")
 def by_paths() -> Picture:
     """The field with a mirror, gloss and a glowing plate."""
@@ -64,7 +95,7 @@ def by_paths() -> Picture:
 def full_field() -> SceneData:
     return field(
         Thing(box((0.2, 0.5, 0), (0.8, 0.7, 0.8)), material(mirror((0.9, 0.7, 0.4)))),
-        Thing(sphere(0.2, 24), material(metal((0.9, 0.9, 0.9), roughness=0.5)), (0.6, -0.1, 0.2)),
+        rough_ball(0.5),
         Thing(quad((-0.9, -0.2, 0.3), (0, 0.2, 0), (0, 0, 0.2)), emitter((4.0, 3.0, 2.0))),
     )
 

@@ -107,17 +107,20 @@ def measure_shadow_photons(scene: Scene) -> list[ShadowRow]:
 
 def measure_gather(scene: Scene) -> list[GatherRow]:
     """Time a final gather with its estimates and with kernels so small that they cost hardly anything: the difference
-    is what irradiance computed beforehand could spare at most."""
+    is what irradiance computed beforehand could spare at most. Both trace the same photons, so neither has a plan."""
     data, method = scene.data(), METHODS["final gather"]
-    small = NO_RADIUS * chosen_radius(scene, data)
-    whole, empty = (Measured(data, method.settings(scene, 0, radius=radius)) for radius in (0.0, small))
+    pixels = data.camera.resolution[0] * data.camera.resolution[1]
+    chosen = chosen_radius(scene, data)
+    same = {"use_auto": False, "photon_count": scene.photon_count or pixels}
+    whole, empty = (
+        Measured(data, method.settings(scene, 0, radius=radius, **same)) for radius in (chosen, NO_RADIUS * chosen)
+    )
     # What is built once, before the first pass, is not compared: small kernels have an index of edges with many cells.
     take_turns([whole, empty], 1)
     first = [render.seconds for render in (whole, empty)]
     take_turns([whole, empty], GATHER_PASSES)
     seconds = [(render.seconds - begin) / GATHER_PASSES for render, begin in zip((whole, empty), first, strict=True)]
     statistics = whole.picture.render.statistics()
-    pixels = data.camera.resolution[0] * data.camera.resolution[1]
     photons = statistics.photons_stored - statistics.caustic_photons
     return [GatherRow(scene.name, *seconds, photons, (GATHER_PASSES + 1) * pixels)]
 

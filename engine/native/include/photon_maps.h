@@ -62,9 +62,10 @@ typedef enum pm_brdf_direction { PM_BRDF_PER_PHOTON = 0, PM_BRDF_MEAN = 1 } pm_b
 
 /* What brings the light of diffuse bounces to what the eye sees. */
 typedef enum pm_indirect {
-    PM_INDIRECT_PHOTONS = 0, /* the global map */
-    PM_INDIRECT_GATHER = 1,  /* a final gather: rays, which ask the global map where they end */
-    PM_INDIRECT_PATHS = 2    /* rays that go on as in path tracing; caustics are still the photons' */
+    PM_INDIRECT_PHOTONS = 0,  /* the global map */
+    PM_INDIRECT_GATHER = 1,   /* a final gather: rays, which ask the global map where they end */
+    PM_INDIRECT_PATHS = 2,    /* rays that go on as in path tracing; caustics are still the photons' */
+    PM_INDIRECT_ALL_PATHS = 3 /* rays that go on as in path tracing, and find caustics, too */
 } pm_indirect;
 
 typedef enum pm_filter {

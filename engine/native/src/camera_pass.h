@@ -19,9 +19,10 @@ enum class Integrator : uint32_t { photon_map = 0, path_tracing = 1, regular_sha
 
 /// What brings the light of diffuse bounces to what the eye sees.
 enum class Indirect : uint32_t {
-    photons,  ///< the global map
-    gather,   ///< a final gather: rays, which ask the global map where they end
-    paths     ///< rays that go on as in path tracing; caustics are still photons'
+    photons,   ///< the global map
+    gather,    ///< a final gather: rays, which ask the global map where they end
+    paths,     ///< rays that go on as in path tracing; caustics are still photons'
+    all_paths  ///< rays that go on as in path tracing, and find caustics, too
 };
 
 /// The photon maps of a pass; either may be empty. The words are those of camera_path.h.
@@ -51,11 +52,13 @@ struct CameraPass {
 struct RayCounts {
     uint64_t rays = 0;  ///< of all kinds
     uint64_t shadow_rays = 0, spared_shadow_rays = 0;
+    uint64_t estimates = 0;  ///< asked of photon maps
 
     RayCounts &operator+=(const RayCounts &other) {
         rays += other.rays;
         shadow_rays += other.shadow_rays;
         spared_shadow_rays += other.spared_shadow_rays;
+        estimates += other.estimates;
         return *this;
     }
 };

@@ -118,6 +118,7 @@ void CameraPath::gather_all(const SurfacePoint &hit, const Shading &shading) {
 
 /// @param last the scattering after which the photons came
 void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes last) {
+    ++counts_.estimates;
     const Gathered gathered = gather_radiance(map, hit, shading);
     word_.then(diffuse_lobes).then(last).buffer(sample_) += throughput_ * gathered.radiance;
     sample_.photon_density += average(throughput_) * gathered.density;
@@ -129,6 +130,7 @@ void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, c
 
 /// What the caustic map brings to what the eye sees, by all radii.
 void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shading) {
+    ++counts_.estimates;
     const Levels gathered = throughput_ * gather_levels(pass_.maps->caustic, hit, shading);
     *levels_ += gathered;
     sample_.caustic += gathered.color(provisional_level);

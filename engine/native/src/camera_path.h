@@ -18,7 +18,8 @@
 //                           eye
 //
 // Where paths bring the light of diffuse bounces (Indirect::paths) the last row is theirs, as in path tracing, and the
-// caustic map is asked at every D of the path. So it is in a final gather, until it ends and asks both maps for all.
+// caustic map is asked at every D of the path; with Indirect::all_paths that row is theirs, too. So the map is in a
+// final gather, until it ends and asks both maps for all.
 //
 // Straight passage through transparent surfaces is no scattering: shadow rays, photons and paths all pass.
 //

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plan.h"
 
+#include <numeric>
+
 #include "parallel.h"
 #include "relative_error.h"
 #include "sequence.h"
@@ -89,19 +91,26 @@ PilotPixels::PilotPixels(const Camera &camera, bool is_nested) : is_nested_(is_n
 void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
     const bool is_first_half = added_ < passes / 2;
     std::vector<RayCounts> counts(pixels_.size());
+    std::vector<float> caustics(pixels_.size());
     parallel_for(pass.threads, pixels_.size(), cancel, [&](size_t i) {
         Pixel &pixel = pixels_[i];
         Levels levels;
         const PixelSample sample =
             render_pixel(pass, pixel.x, pixel.y, true, counts[i], is_nested_ ? &levels : nullptr);
         pixel.radiance[added_] = sample.radiance();
+        caustics[i] = average(sample.caustic);
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
         pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
         pixel.global_blur.add(sample.global.blur, is_first_half);
         pixel.caustic_blur.add(sample.caustic_map.blur, is_first_half);
     });
-    for (const RayCounts &count : counts) rays_ += count.rays;
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const double caustic = caustics[i];
+        caustic_sum_ += caustic;
+        caustic_squares_ += caustic * caustic;
+        counts_ += counts[i];
+    }
     ++added_;
 }
 
@@ -134,10 +143,34 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
     noise.caustic.blur = blur(&Pixel::caustic_blur);
 }
 
+double PilotPixels::pixel_cost() const {
+    constexpr double estimate_cost = 2.5;
+    const double rays = static_cast<double>(counts_.rays) + estimate_cost * static_cast<double>(counts_.estimates);
+    return rays / static_cast<double>(pixels_.size() * passes);
+}
+
+double PilotPixels::hidden_caustic_variance(const PilotPixels &photons) const {
+    // How much of a pixel's radiance is caustics.
+    const std::vector<Vec3> means = photons.means();
+    const float floor = squared_floor(means);
+    double share = 0;
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const Vec3 mean = photons.pixels_[i].caustic.sum / static_cast<float>(passes);
+        share += std::sqrt(relative_square(mean * mean, means[i], floor));
+    }
+    share /= static_cast<double>(pixels_.size());
+
+    // By how many samples that seems to come (Kish 1965), and at the least by how few: what comes with probability p
+    // has a variance of about its square over p.
+    const double came = caustic_squares_ > 0 ? caustic_sum_ * caustic_sum_ / caustic_squares_ : 0;
+    const double fewest = std::max(1.0, came - 2 * std::sqrt(came));
+    return share * share * static_cast<double>(pixels_.size() * passes) / fewest;
+}
+
 std::vector<Vec3> PilotPixels::means() const {
     std::vector<Vec3> means;
     for (const Pixel &p : pixels_)
-        means.push_back((p.camera.sum + p.global.sum + p.caustic.sum) / static_cast<float>(passes));
+        means.push_back(std::accumulate(p.radiance.begin(), p.radiance.end(), Vec3{}) / static_cast<float>(passes));
     return means;
 }
 

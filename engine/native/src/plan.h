@@ -35,13 +35,8 @@ struct PilotNoise {
     double camera_variance = 0;  ///< of all that photons do not carry
     MapNoise global, caustic;
     double lack = 0;         ///< relative square of the light that is missing in all pilot passes
-    double pixel_cost = 0;   ///< of the camera's path and its estimates, in rays, times the pixels
+    double pixel_cost = 0;   ///< of the cameras' paths and their estimates of a whole pass, in rays
     double gather_cost = 0;  ///< of the photons in the kernels of a whole pass, in rays
-};
-
-/// By what brings the light of diffuse bounces.
-struct PilotNoises {
-    PilotNoise photons, paths;
 };
 
 struct Plan {
@@ -69,8 +64,12 @@ class PilotPixels {
     /// @throws Cancelled once `cancel` is set
     void add(const CameraPass &pass, const std::atomic<bool> *cancel);
 
-    /// Rays of a pixel in a pass, on average.
-    double rays_per_pixel() const { return static_cast<double>(rays_) / static_cast<double>(pixels_.size() * passes); }
+    /// Rays and estimates of a pixel in a pass, on average, in rays.
+    double pixel_cost() const;
+    /// Most that the variance of a pass's caustics may be without it showing in the pilots, relative to squared
+    /// radiance: where few samples bring caustics, those that happened to come tell little of the others.
+    /// @param photons the same pixels with caustics by photons, which tell how much there is to come
+    double hidden_caustic_variance(const PilotPixels &photons) const;
     /// Sets the variances and the blur that the passes tell, once all are added.
     void find_noise(PilotNoise &noise) const;
     /// Relative square of the light that the pixels lack on average but others have, as far as noise cannot be the
@@ -99,7 +98,15 @@ class PilotPixels {
     std::vector<Pixel> pixels_;
     bool is_nested_;
     uint32_t added_ = 0;
-    uint64_t rays_ = 0;
+    RayCounts counts_;
+    double caustic_sum_ = 0, caustic_squares_ = 0;
+};
+
+/// A way to bring the light of diffuse bounces, and what pilot passes tell of it.
+struct Pilot {
+    Indirect indirect;
+    PilotPixels pixels;
+    PilotNoise noise;
 };
 
 }  // namespace photon_maps

@@ -67,12 +67,14 @@ bool Render::traces(PhotonPurpose purpose) const {
     const bool wants_photons =
         (settings_.integrator == Integrator::photon_map || is_guided()) && settings_.max_bounces > 0;
     if (!wants_photons || emission_.empty() || scene_.instances.empty() || !receives_) return false;
-    return purpose == PhotonPurpose::caustic ? settings_.use_caustics && emission_.has_casters()
-                                             : settings_.use_indirect && indirect_ != Indirect::paths;
+    if (purpose == PhotonPurpose::caustic)
+        return settings_.use_caustics && emission_.has_casters() && indirect_ != Indirect::all_paths;
+    return settings_.use_indirect && indirect_ != Indirect::paths && indirect_ != Indirect::all_paths;
 }
 
-/// Whether caustics are gathered by nested radii.
+/// Whether caustics are gathered by nested radii, as far as is known.
 bool Render::is_nested() const {
+    if (first_radii_ && first_radii_->caustic == 0) return false;
     return settings_.is_nested && settings_.integrator == Integrator::photon_map && traces(PhotonPurpose::caustic);
 }
 
@@ -102,15 +104,18 @@ PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
 }
 
 void Render::render_pass(uint32_t index) {
-    Film pass_film(view_.width, view_.height, settings_.buffers, is_nested());
+    RenderStatistics spent;
+    std::optional<Film> pass_film;
     try {
-        render_into(pass_film, index);
+        prepare(spent);
+        pass_film.emplace(view_.width, view_.height, settings_.buffers, is_nested());
+        render_into(*pass_film, index, spent);
     } catch (const Cancelled &) {
         cancel_ = false;
         throw;
     }
-    film_.add(pass_film, left_out_);
-    if (error_) error_->add(film_, pass_film, left_out_);
+    film_.add(*pass_film, left_out_);
+    if (error_) error_->add(film_, *pass_film, left_out_);
     leave_out_what_is_done();
 }
 
@@ -225,17 +230,18 @@ PhotonMaps Render::gathers_of(const Maps &maps, const Radii &radii) const {
     return {gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
 }
 
-CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers,
+CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,
                                uint32_t index) const {
+    const bool has_maps = settings_.integrator == Integrator::photon_map && indirect != Indirect::all_paths;
     return {scene_,
             lights_,
             camera,
             pixel_sampler_,
             settings_.integrator,
-            settings_.integrator == Integrator::photon_map ? &gathers : nullptr,
+            has_maps ? &gathers : nullptr,
             maps.importance ? &*maps.importance : nullptr,
             maps.shadow_photons ? &*maps.shadow_photons : nullptr,
-            indirect_,
+            indirect,
             settings_.max_bounces,
             hash(settings_.seed, camera_stream),
             index,
@@ -243,25 +249,26 @@ CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const Pho
             settings_.threads};
 }
 
-void Render::render_into(Film &pass_film, uint32_t index) {
-    RenderStatistics spent;
+/// Builds what rays are traced through, and chooses kernels and photons before the first pass.
+void Render::prepare(RenderStatistics &spent) {
     scene_.build(settings_.threads, &cancel_);
-
-    // Choose the kernels before the first pass.
-    if (!first_radii_) {
-        const Stopwatch watch(spent.seconds_trace);
-        const PhotonCounts counts = counts_;
-        const Indirect indirect = indirect_;
-        try {
-            choose_radii();
-            make_plan();
-        } catch (...) {  // a render that goes on after a cancel begins here again
-            counts_ = counts;
-            indirect_ = indirect;
-            first_radii_.reset();
-            throw;
-        }
+    if (first_radii_) return;
+    const Stopwatch watch(spent.seconds_trace);
+    const PhotonCounts counts = counts_;
+    const Indirect indirect = indirect_;
+    try {
+        choose_radii();
+        make_plan();
+    } catch (...) {  // a render that goes on after a cancel begins here again
+        counts_ = counts;
+        indirect_ = indirect;
+        first_radii_.reset();
+        throw;
     }
+    if (film_.nested() && !is_nested()) film_ = Film(view_.width, view_.height, settings_.buffers, is_nested());
+}
+
+void Render::render_into(Film &pass_film, uint32_t index, RenderStatistics &spent) {
     const Radii radii = radii_of_pass(index);
 
     // Pass 1: this pass's own photons and their maps, unless another picture had them.
@@ -278,7 +285,7 @@ void Render::render_into(Film &pass_film, uint32_t index) {
     {
         const Stopwatch watch(spent.seconds_gather);
         const PhotonMaps gathers = gathers_of(maps, radii);
-        const CameraPass rays = camera_pass(view_, maps, gathers, index);
+        const CameraPass rays = camera_pass(view_, maps, gathers, indirect_, index);
         spent.rays = render_camera_pass(rays, pass_film, error_ ? &*error_ : nullptr, left_out_, &cancel_);
     }
 

@@ -100,16 +100,18 @@ class Render {
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     void choose_radii();
     void make_plan();
-    PilotNoises run_pilot_passes();
-    bool may_go_by_paths() const;
-    CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, uint32_t index) const;
+    std::vector<Indirect> ways() const;
+    std::vector<Pilot> run_pilot_passes();
+    CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,
+                           uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
     std::shared_ptr<const TracedPass> trace_pass(uint32_t index, const Radii &radii, RenderStatistics &spent);
     Maps build_maps(TracedPhotons &photons, const Radii &radii) const;
     PhotonImportance importance_of(const TracedPhotons &photons) const;
     PhotonMaps gathers_of(const Maps &maps, const Radii &radii) const;
-    void render_into(Film &pass_film, uint32_t index);
+    void prepare(RenderStatistics &spent);
+    void render_into(Film &pass_film, uint32_t index, RenderStatistics &spent);
     void leave_out_what_is_done();
 
     Scene &scene_;

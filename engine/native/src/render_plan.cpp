@@ -47,13 +47,24 @@ void Render::choose_radii() {
     first_radii_ = {std::min(radii.indirect, largest.radius), std::min(radii.caustic, largest.radius)};
 }
 
+/// The ways to bring the light of diffuse bounces that are open to the plan, the usual one first.
+std::vector<Indirect> Render::ways() const {
+    const bool may_go_by_paths = first_radii_->indirect > 0 && indirect_ == Indirect::photons && !marks_shadows() &&
+                                 !settings_.use_photon_guiding;
+    if (!may_go_by_paths) return {indirect_};
+    // Without a caustic map paths leave nothing to photons.
+    if (first_radii_->caustic == 0) return {indirect_, Indirect::paths};
+    return {indirect_, Indirect::paths, Indirect::all_paths};
+}
+
 /// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
 /// is summed would not be blind to it.
-PilotNoises Render::run_pilot_passes() {
-    PilotPixels by_photons(camera_, is_nested()), by_paths(camera_, is_nested());
+std::vector<Pilot> Render::run_pilot_passes() {
+    std::vector<Pilot> pilots;
+    for (const Indirect way : ways()) pilots.emplace_back(way, PilotPixels(camera_, is_nested()));
     uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
-    for (uint32_t pilot = 0; pilot < PilotPixels::passes; ++pilot) {
-        const uint32_t index = std::numeric_limits<uint32_t>::max() - pilot;
+    for (uint32_t i = 0; i < PilotPixels::passes; ++i) {
+        const uint32_t index = std::numeric_limits<uint32_t>::max() - i;
         TracedPhotons photons = trace(index);
         rays += photons.rays - photons.caustic_rays;
         caustic_rays += photons.caustic_rays;
@@ -61,37 +72,34 @@ PilotNoises Render::run_pilot_passes() {
         stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
         const Maps maps = build_maps(photons, *first_radii_);
         const PhotonMaps gathers = gathers_of(maps, *first_radii_);
-        by_photons.add(camera_pass(camera_, maps, gathers, index), &cancel_);
-        CameraPass paths = camera_pass(camera_, maps, gathers, index);
-        paths.indirect = Indirect::paths;
-        by_paths.add(paths, &cancel_);
+        for (Pilot &pilot : pilots)
+            pilot.pixels.add(camera_pass(camera_, maps, gathers, pilot.indirect, index), &cancel_);
     }
 
     // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
-    constexpr double query_cost = 2.5, storing_cost = 0.1;
+    constexpr double storing_cost = 0.1;
     const auto cost = [](uint64_t traced, uint64_t kept, uint64_t count) {
         const auto emitted = static_cast<double>(count * PilotPixels::passes);
         return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
     };
-    PilotNoises noises;
-    by_photons.find_noise(noises.photons);
-    by_paths.find_noise(noises.paths);
-    noises.photons.lack = by_photons.squared_lack(by_paths);
-    noises.paths.lack = by_paths.squared_lack(by_photons);
     const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
-    const bool has_caustics = first_radii_->caustic > 0, has_global = first_radii_->indirect > 0;
-    for (PilotNoise *noise : {&noises.photons, &noises.paths}) {
-        if (!has_caustics) continue;
-        noise->caustic.count = static_cast<double>(counts_.caustic);
-        noise->caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
+    for (Pilot &pilot : pilots) {
+        PilotNoise &noise = pilot.noise;
+        pilot.pixels.find_noise(noise);
+        for (const Pilot &other : pilots) noise.lack = std::max(noise.lack, pilot.pixels.squared_lack(other.pixels));
+        noise.pixel_cost = frame * pilot.pixels.pixel_cost();
+        if (pilot.indirect == Indirect::all_paths) {
+            noise.camera_variance += pilot.pixels.hidden_caustic_variance(pilots.front().pixels);
+        } else if (first_radii_->caustic > 0) {
+            noise.caustic.count = static_cast<double>(counts_.caustic);
+            noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
+        }
+        if (first_radii_->indirect > 0 && pilot.indirect <= Indirect::gather) {
+            noise.global.count = static_cast<double>(counts_.global);
+            noise.global.cost = cost(rays, stored, counts_.global);
+        }
     }
-    if (has_global) {
-        noises.photons.global.count = static_cast<double>(counts_.global);
-        noises.photons.global.cost = cost(rays, stored, counts_.global);
-    }
-    noises.photons.pixel_cost = frame * (by_photons.rays_per_pixel() + query_cost * (has_caustics + has_global));
-    noises.paths.pixel_cost = frame * (by_paths.rays_per_pixel() + query_cost * has_caustics);
-    return noises;
+    return pilots;
 }
 
 void Render::make_plan() {
@@ -103,35 +111,35 @@ void Render::make_plan() {
     // See what a few passes bring to some pixels.
     const PhotonCounts usual = counts_;
     counts_ = {std::min(usual.global, most_pilot_photons), std::min(usual.caustic, most_pilot_photons)};
-    PilotNoises noises = run_pilot_passes();
+    std::vector<Pilot> pilots = run_pilot_passes();
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
     const double photons_in_kernel =
         usual_photons_in_kernel * static_cast<double>(counts_.global) / static_cast<double>(usual.global);
-    noises.photons.gather_cost =
+    pilots.front().noise.gather_cost =
         static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;
 
-    // Without an error to stop at, the one that most pictures are made for.
+    // What comes to the error in the least time; without one to stop at, to that which most pictures are made for.
     constexpr double usual_error = 0.02;
     const double error = settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error;
-    const Plan by_photons = plan_for(noises.photons, error, settings_.use_progressive);
-    const Plan by_paths = plan_for(noises.paths, error, settings_.use_progressive);
-    const bool takes_paths = may_go_by_paths() && by_paths.cost < by_photons.cost;
-    const Plan &plan = takes_paths ? by_paths : by_photons;
-    pilot_noise_ = takes_paths ? noises.paths : noises.photons;
+    const Pilot *best = nullptr;
+    Plan plan;
+    for (const Pilot &pilot : pilots) {
+        const Plan found = plan_for(pilot.noise, error, settings_.use_progressive);
+        if (best && found.cost >= plan.cost) continue;
+        best = &pilot;
+        plan = found;
+    }
+    pilot_noise_ = best->noise;
+    indirect_ = best->indirect;
     counts_ = plan.counts;
     first_radii_->indirect *= plan.global_radius;
-    if (!takes_paths) return;
-    counts_.global = usual.global;  // what a global map would have
-    first_radii_->indirect = 0;
-    indirect_ = Indirect::paths;
-}
-
-/// Whether nothing but the light of diffuse bounces is asked of the global map's photons.
-bool Render::may_go_by_paths() const {
-    return first_radii_->indirect > 0 && indirect_ == Indirect::photons && !marks_shadows() &&
-           !settings_.use_photon_guiding;
+    // Maps that are not built have no radius; their count is what they would have.
+    if (!traces(PhotonPurpose::global)) first_radii_->indirect = 0;
+    if (!traces(PhotonPurpose::caustic)) first_radii_->caustic = 0;
+    if (first_radii_->indirect == 0) counts_.global = usual.global;
+    if (first_radii_->caustic == 0) counts_.caustic = usual.caustic;
 }
 
 }  // namespace photon_maps
