@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plan.h"
 
+#include <numbers>
 #include <numeric>
 
 #include "parallel.h"
@@ -36,6 +37,15 @@ double passes_needed(double camera, double photons, double blur, double lack, do
         (squared_error(middle) > error * error ? low : high) = middle;
     }
     return high;
+}
+
+/// Mean of what is normally distributed and known to be positive (of the truncated normal distribution).
+/// @param center, deviation of the distribution, as it would be if it could be negative
+double mean_above_zero(double center, double deviation) {
+    if (deviation == 0) return std::max(center, 0.0);
+    const double z = std::max(center / deviation, -5.0);  // below, the quotient is lost in rounding
+    const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    return deviation * (z + density / (std::erfc(-z * std::numbers::sqrt2 / 2) / 2));
 }
 
 }  // namespace
@@ -127,14 +137,14 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
     const auto variance = [&](Moments Pixel::*part) {
         return mean_over_pixels([&](const Pixel &p) { return (p.*part).difference * (p.*part).difference / count; });
     };
-    // As far as the noise of the difference tells: blur that cannot be ruled out counts.
+    // Expected from a difference that noise may have brought about as well.
     const auto blur = [&](Moments Pixel::*part) {
         const double difference = mean_over_pixels([&](const Pixel &p) {
             const Vec3 mean = (p.*part).sum / count;
             return mean * mean - variance_of_mean((p.*part).sum, (p.*part).squares, passes);
         });
         const double doubt = variance(part) / count * std::sqrt(2.0 / static_cast<double>(pixels_.size()));
-        return blur_of_difference * blur_of_difference * (std::max(difference, 0.0) + doubt);
+        return blur_of_difference * blur_of_difference * mean_above_zero(difference, doubt);
     };
     noise.camera_variance = variance(&Pixel::camera);
     noise.global.variance = variance(&Pixel::global);
