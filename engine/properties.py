@@ -54,6 +54,15 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
         items=ESTIMATES,
         default=_DEFAULTS.estimate.name,
     )
+    light_samples: IntProperty(
+        name="Light Samples",
+        description="Shadow rays to each light in a pass, or to so many of more than eight lights, where the camera "
+        "sees a diffuse surface. More make direct light less grainy, and a pass longer; they pay where direct light is "
+        "what is left of the noise",
+        default=1,
+        min=1,
+        max=64,
+    )
     nearest_count: IntProperty(
         name="Nearest Photons",
         description="How many photons the nearest estimate counts. More are smoother, more blurred and slower",

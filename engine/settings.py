@@ -110,6 +110,7 @@ class RenderSettings:
     film_transparent: bool = False
     threads: int = 0  #: 0: one for every core
     use_auto: bool = False  #: photon_count and radius, where 0, follow from pilot passes
+    light_samples: int = 0  #: of each light, or choices among many, where photons are asked; 0: 1, or chosen
     keep_photons: bool = False  #: so that they can be read after a pass; costs memory
 
     @property

@@ -55,6 +55,7 @@ def plan_of(statistics: Statistics) -> dict[str, float | str]:
         "caustic_photon_count": statistics.caustic_photon_count if statistics.caustic_radius_first > 0 else 0,
         "radius": statistics.radius_first,
         "caustic_radius": statistics.caustic_radius_first,
+        "light_samples": statistics.light_samples,
         "camera_noise": round(statistics.pilot_camera_noise, 6),
         "global_noise": round(statistics.pilot_global_noise, 6),
         "caustic_noise": round(statistics.pilot_caustic_noise, 6),

@@ -11,8 +11,8 @@ from .settings import AUTOMATIC, BrdfDirection, Estimate, Filter, Integrator, Pi
 
 #: What Automatic chooses by itself.
 CHOSEN = (
-    *("photon_count", "radius", "estimate", "nearest_count", "brdf_direction", "use_final_gather"),
-    *("use_shadow_photons", "use_photon_guiding", "filter", "cone_k"),
+    *("photon_count", "radius", "estimate", "nearest_count", "light_samples", "brdf_direction"),
+    *("use_final_gather", "use_shadow_photons", "use_photon_guiding", "filter", "cone_k"),
 )
 #: What holds with Automatic, too.
 KEPT = (

@@ -82,6 +82,7 @@ class PHOTON_MAPS_PT_photons(Panel, bpy.types.Panel):
         cone.active = settings.filter == "CONE"
         cone.prop(settings, "cone_k")
         by_hand.prop(settings, "brdf_direction")
+        by_hand.prop(settings, "light_samples")
         for sentence in last_render.recall(context.scene.session_uid, context.view_layer.name).maps:
             label(column, sentence, context)
 

@@ -28,6 +28,7 @@ class Size:
     photon_count: int  #: of a pass with the present settings
     radius: float  #: of the first pass with the present settings, scene units; 0: no photon map
     by_paths: bool = False  #: Automatic has paths bring indirect light
+    light_samples: int = 0  #: with the present settings
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ class Variant:
     def settings(self, base: RenderSettings, size: Size) -> RenderSettings:
         """Return the settings at the picture's full size; what differs from what Automatic chooses is set by hand."""
         if base.use_auto and not self._is_automatic:
-            base = replace(base, use_auto=False, photon_count=size.photon_count, radius=size.radius)
+            chosen = {"photon_count": size.photon_count, "radius": size.radius, "light_samples": size.light_samples}
+            base = replace(base, use_auto=False, **chosen)
         return replace(
             base,
             stop=Stop.PASSES,
@@ -67,6 +69,7 @@ class Variant:
             use_auto=False,
             pass_offset=0,
             photon_count=max(1, round(self.photons * small.photon_count)),
+            light_samples=full.light_samples,
             radius=small_radius(base, full, small) if self.radius is None else self.radius * small.radius,
         )
 

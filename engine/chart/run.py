@@ -145,4 +145,5 @@ def size_of(pixels: int, session: Session) -> Size:
     statistics = session.statistics()
     count = statistics.photon_count or statistics.caustic_photon_count
     radius = statistics.radius_first or statistics.caustic_radius_first
-    return Size(pixels, count, radius, statistics.indirect in (Indirect.PATHS, Indirect.ALL_PATHS))
+    by_paths = statistics.indirect in (Indirect.PATHS, Indirect.ALL_PATHS)
+    return Size(pixels, count, radius, by_paths, statistics.light_samples)

@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 5 };
+enum { PM_ABI_VERSION = 6 };
 
 typedef enum pm_status {
     PM_OK = 0,
@@ -136,6 +136,8 @@ typedef struct pm_settings {
                                 samples, which needs PM_PASS_ERROR */
     uint32_t use_auto; /* 1: with photon_count and radius 0, both follow from pilot passes: from what noise, blur and
                           cost those have in each map, and from the error that the picture is made for */
+    uint32_t light_samples; /* of each light, or choices among many, where a camera's path asks the photons; 0: 1, or
+                               with use_auto what pilot passes tell */
 } pm_settings;
 
 typedef struct pm_statistics {
@@ -172,7 +174,8 @@ typedef struct pm_statistics {
     float pilot_camera_noise;
     float pilot_global_noise;
     float pilot_caustic_noise;
-    float done; /* share of the picture that gets no further samples */
+    float done;             /* share of the picture that gets no further samples */
+    uint32_t light_samples; /* as set or chosen */
 } pm_statistics;
 
 typedef struct pm_photon {

@@ -32,7 +32,7 @@ from .convert import (
 from .errors import NativeError, Status
 from .scene_data import Camera, PhotonArrays, SceneData, Statistics
 
-ABI_VERSION = 5
+ABI_VERSION = 6
 
 
 def embree_path() -> Path:

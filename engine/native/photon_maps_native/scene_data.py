@@ -258,6 +258,7 @@ class Statistics:
     pilot_global_noise: float
     pilot_caustic_noise: float
     done: float  #: share of the picture that gets no further samples
+    light_samples: int  #: of each light, or choices among many, at the first diffuse vertices; as set or chosen
 
 
 @dataclass

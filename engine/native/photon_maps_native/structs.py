@@ -186,6 +186,7 @@ class PmSettings(SizedStructure):
         ("keep_photons", c_uint32),
         ("stop_error", c_float),
         ("use_auto", c_uint32),
+        ("light_samples", c_uint32),
     ]
 
 
@@ -224,6 +225,7 @@ class PmStatistics(SizedStructure):
         ("pilot_global_noise", c_float),
         ("pilot_caustic_noise", c_float),
         ("done", c_float),
+        ("light_samples", c_uint32),
     ]
 
 

@@ -96,6 +96,7 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->caustic_radius_last = s.caustic_radius_last;
         statistics->caster_count = render->state->emission->caster_count();
         statistics->indirect = static_cast<uint32_t>(render->render.indirect());
+        statistics->light_samples = render->render.light_samples();
         statistics->shadow_rays = s.rays.shadow_rays;
         statistics->spared_shadow_rays = s.rays.spared_shadow_rays;
         statistics->seconds_trace = s.seconds_trace;

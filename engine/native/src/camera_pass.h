@@ -42,6 +42,7 @@ struct CameraPass {
     const ShadowPhotons *shadow_photons;  ///< null: all shadow rays are traced
     Indirect indirect;
     uint32_t max_bounces;
+    uint32_t light_samples;  ///< of each source, or choices among many, at the first diffuse vertices
     uint32_t seed;
     uint32_t index;  ///< of the pass
     bool film_transparent;
@@ -52,13 +53,15 @@ struct CameraPass {
 struct RayCounts {
     uint64_t rays = 0;  ///< of all kinds
     uint64_t shadow_rays = 0, spared_shadow_rays = 0;
-    uint64_t estimates = 0;  ///< asked of photon maps
+    uint64_t estimates = 0;      ///< asked of photon maps
+    uint64_t light_samples = 0;  ///< at first diffuse vertices
 
     RayCounts &operator+=(const RayCounts &other) {
         rays += other.rays;
         shadow_rays += other.shadow_rays;
         spared_shadow_rays += other.spared_shadow_rays;
         estimates += other.estimates;
+        light_samples += other.light_samples;
         return *this;
     }
 };

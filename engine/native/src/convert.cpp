@@ -127,6 +127,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.keep_photons = source.keep_photons != 0;
     settings.stop_error = source.stop_error;
     settings.use_auto = source.use_auto != 0;
+    settings.light_samples = source.light_samples;
     settings.threads = thread_count(source.threads);
     settings.buffers = source.passes;
     return settings;

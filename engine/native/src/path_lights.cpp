@@ -5,20 +5,29 @@
 namespace photon_maps {
 
 void CameraPath::sample_lights(const SurfacePoint &hit, const Shading &shading) {
-    if (asks_every_source()) {
-        for (size_t source = 0; source < pass_.lights.source_count(); ++source) {
-            if (!pass_.lights.shines(source)) continue;
-            const auto u = sequence_.next();
-            sample_source(hit, shading, {source, 1, u[2]}, u);
+    // Where photons bring the rest, or a path goes on to what is seen less directly.
+    const bool is_first = word_.diffuse == 0 && (lobes_of(shading) & diffuse_lobes) != 0;
+    const uint32_t count = is_first ? pass_.light_samples : 1;
+    const auto sample_each = [&](auto choose) {
+        if (is_first) counts_.light_samples += count;
+        const Sequence::Points points = sequence_.points(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            const auto u = points[i];
+            if (const std::optional<Lights::Choice> choice = choose(u[2]))
+                sample_source(hit, shading, *choice, u, 1 / static_cast<float>(count));
         }
-    } else {
-        const auto u = sequence_.next();
-        if (const auto choice = pass_.lights.choose(hit.position, u[2])) sample_source(hit, shading, *choice, u);
+    };
+    if (!asks_every_source()) {
+        sample_each([&](float u) { return pass_.lights.choose(hit.position, u); });
+        return;
     }
+    for (size_t source = 0; source < pass_.lights.source_count(); ++source)
+        if (pass_.lights.shines(source))
+            sample_each([&](float u) -> std::optional<Lights::Choice> { return Lights::Choice{source, 1, u}; });
 }
 
 void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, const Lights::Choice &choice,
-                               const std::array<float, 4> &u) {
+                               const std::array<float, 4> &u, float share) {
     const bool both_sides = (lobes_of(shading) & transmissive_lobes) != 0;
     const auto light = pass_.lights.sample(choice.source, hit.position, hit.shading_normal, both_sides,
                                            receiver(shading), {u[0], u[1], choice.left});
@@ -34,7 +43,7 @@ void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, 
         if (max_component(scattered[part]) <= 0) continue;
         const float other = light->pdf > 0 ? other_pdf(shading, parts[part], choice.source, light->direction) : 0;
         const float mis = other > 0 ? power_heuristic(light->pdf * choice.probability, other) : 1;
-        scattered[part] = scattered[part] * (mis / choice.probability);
+        scattered[part] = scattered[part] * (share * mis / choice.probability);
     }
     if (max_component(scattered[0] + scattered[1]) <= 0) return;
     const Ray shadow{hit.origin_towards(light->direction), light->direction, 0, light->distance};

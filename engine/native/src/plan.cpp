@@ -48,9 +48,8 @@ double mean_above_zero(double center, double deviation) {
     return deviation * (z + density / (std::erfc(-z * std::numbers::sqrt2 / 2) / 2));
 }
 
-}  // namespace
-
-Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
+/// Chooses photons and radius.
+Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
         // Fewer would cost no less: a pass of a small picture has other things to do. 2^14 ... 2^23.
         constexpr int fewest = 10, most = 23, steps = 2;
@@ -60,8 +59,9 @@ Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
             counts.push_back(std::exp2(static_cast<double>(i) / steps));
         return counts;
     };
-    const std::vector<double> radii =
-        noise.global.count > 0 ? std::vector<double>{1, 0.84, 0.71, 0.59, 0.5, 0.42, 0.35} : std::vector<double>{1};
+    const std::vector<double> radii = noise.global.count > 0
+                                          ? std::vector<double>{1, 0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25}
+                                          : std::vector<double>{1};
     Plan best;
     double best_cost = std::numeric_limits<double>::infinity();
     for (const double global : counts_of(noise.global))
@@ -81,10 +81,48 @@ Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
                 cost *= passes_needed(noise.camera_variance, photons, blur, noise.lack, error, shrinks);
                 if (cost >= best_cost) continue;
                 best_cost = cost;
-                best = {
-                    {static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)}, static_cast<float>(radius), cost};
+                best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
+                        1,
+                        static_cast<float>(radius),
+                        cost};
             }
     return best;
+}
+
+/// So many light samples of a pass that variance times cost is least.
+uint32_t light_samples_for(const PilotNoise &noise, const PhotonCounts &counts, float radius) {
+    constexpr double most = 16;
+    const double area = static_cast<double>(radius) * static_cast<double>(radius);
+    const auto photons = [](const MapNoise &map, uint64_t count) {
+        return count > 0 ? map.variance * map.count / static_cast<double>(count) : 0;
+    };
+    const auto traced = [](const MapNoise &map, uint64_t count) { return map.cost * static_cast<double>(count); };
+    const double other = noise.camera_variance - noise.direct_variance + photons(noise.global, counts.global) / area +
+                         photons(noise.caustic, counts.caustic);
+    const double cost = noise.pixel_cost + traced(noise.global, counts.global) + traced(noise.caustic, counts.caustic);
+    // With k samples: (other + direct / k) * (cost + k * light_cost).
+    if (noise.light_cost == 0 || noise.direct_variance == 0) return 1;
+    const double best = std::sqrt(noise.direct_variance * cost / (std::max(other, 1e-12) * noise.light_cost));
+    return static_cast<uint32_t>(std::clamp(std::round(best), 1.0, most));
+}
+
+}  // namespace
+
+PilotNoise PilotNoise::with_light_samples(uint32_t count) const {
+    PilotNoise noise = *this;
+    noise.camera_variance -= direct_variance * (1 - 1.0 / count);
+    noise.direct_variance /= count;
+    noise.pixel_cost += (count - 1) * light_cost;
+    return noise;
+}
+
+Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
+    const Plan with_one = plan_photons(noise, error, shrinks);
+    const uint32_t count = light_samples_for(noise, with_one.counts, with_one.global_radius);
+    if (count == 1) return with_one;
+    Plan with_more = plan_photons(noise.with_light_samples(count), error, shrinks);
+    with_more.light_samples = count;
+    return with_more.cost < with_one.cost ? with_more : with_one;
 }
 
 PilotPixels::PilotPixels(const Camera &camera, bool is_nested) : is_nested_(is_nested) {
@@ -112,6 +150,7 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
         pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
+        pixel.direct.add(sample.direct, is_first_half);
         pixel.global_blur.add(sample.global.blur, is_first_half);
         pixel.caustic_blur.add(sample.caustic_map.blur, is_first_half);
     });
@@ -147,6 +186,7 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
         return blur_of_difference * blur_of_difference * mean_above_zero(difference, doubt);
     };
     noise.camera_variance = variance(&Pixel::camera);
+    noise.direct_variance = std::min(variance(&Pixel::direct), noise.camera_variance);
     noise.global.variance = variance(&Pixel::global);
     noise.caustic.variance = variance(&Pixel::caustic);
     noise.global.blur = blur(&Pixel::global_blur);
@@ -155,8 +195,7 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
 
 double PilotPixels::pixel_cost() const {
     constexpr double estimate_cost = 2.5;
-    const double rays = static_cast<double>(counts_.rays) + estimate_cost * static_cast<double>(counts_.estimates);
-    return rays / static_cast<double>(pixels_.size() * passes);
+    return per_pixel(counts_.rays) + estimate_cost * per_pixel(counts_.estimates);
 }
 
 double PilotPixels::hidden_caustic_variance(const PilotPixels &photons) const {

@@ -33,14 +33,20 @@ struct MapNoise {
 /// What pilot passes found.
 struct PilotNoise {
     double camera_variance = 0;  ///< of all that photons do not carry
+    double direct_variance = 0;  ///< part of it that more light samples take away
     MapNoise global, caustic;
     double lack = 0;         ///< relative square of the light that is missing in all pilot passes
     double pixel_cost = 0;   ///< of the cameras' paths and their estimates of a whole pass, in rays
+    double light_cost = 0;   ///< of so many more light samples in a whole pass, in rays
     double gather_cost = 0;  ///< of the photons in the kernels of a whole pass, in rays
+
+    /// The same for passes with so many light samples in the place of one.
+    PilotNoise with_light_samples(uint32_t count) const;
 };
 
 struct Plan {
     PhotonCounts counts;
+    uint32_t light_samples = 1;
     float global_radius = 1;  ///< over that of the pilot passes
     double cost = 0;          ///< in rays, until the picture has its error
 };
@@ -66,6 +72,8 @@ class PilotPixels {
 
     /// Rays and estimates of a pixel in a pass, on average, in rays.
     double pixel_cost() const;
+    /// Light samples of a pixel in a pass at first diffuse vertices, on average.
+    double light_samples() const { return per_pixel(counts_.light_samples); }
     /// Most that the variance of a pass's caustics may be without it showing in the pilots, relative to squared
     /// radiance: where few samples bring caustics, those that happened to come tell little of the others.
     /// @param photons the same pixels with caustics by photons, which tell how much there is to come
@@ -89,11 +97,14 @@ class PilotPixels {
     };
     struct Pixel {
         uint32_t x, y;  ///< in the frame
-        Moments camera, global, caustic, global_blur, caustic_blur;
+        Moments camera, direct, global, caustic, global_blur, caustic_blur;
         std::array<Vec3, passes> radiance;
     };
 
     std::vector<Vec3> means() const;
+    double per_pixel(uint64_t count) const {
+        return static_cast<double>(count) / static_cast<double>(pixels_.size() * passes);
+    }
 
     std::vector<Pixel> pixels_;
     bool is_nested_;

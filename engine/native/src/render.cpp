@@ -49,6 +49,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       receives_(std::ranges::any_of(
           scene.slot_materials, [&](uint32_t m) { return (scene.materials[m].traits.lobes & diffuse_lobes) != 0; })),
       indirect_(settings.use_final_gather ? Indirect::gather : Indirect::photons),
+      light_samples_(std::max(1u, settings.light_samples)),
       counts_(photon_counts_for(settings, camera)),
       film_(camera.width, camera.height, settings.buffers, is_nested()),
       left_out_(film_.tiles().count()) {
@@ -243,6 +244,7 @@ CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const Pho
             maps.shadow_photons ? &*maps.shadow_photons : nullptr,
             indirect,
             settings_.max_bounces,
+            light_samples_,
             hash(settings_.seed, camera_stream),
             index,
             settings_.film_transparent,
@@ -256,12 +258,14 @@ void Render::prepare(RenderStatistics &spent) {
     const Stopwatch watch(spent.seconds_trace);
     const PhotonCounts counts = counts_;
     const Indirect indirect = indirect_;
+    const uint32_t light_samples = light_samples_;
     try {
         choose_radii();
         make_plan();
     } catch (...) {  // a render that goes on after a cancel begins here again
         counts_ = counts;
         indirect_ = indirect;
+        light_samples_ = light_samples;
         first_radii_.reset();
         throw;
     }

@@ -32,8 +32,9 @@ struct RenderSettings {
     int threads;
     uint32_t buffers;  ///< bit 1 << Buffer
     bool keep_photons;
-    bool use_auto;     ///< counts and radii that are 0 follow from pilot passes
-    float stop_error;  ///< tiles far below it are left out of further passes; 0: none is
+    bool use_auto;           ///< counts and radii that are 0 follow from pilot passes
+    uint32_t light_samples;  ///< as of CameraPass; 0: planned, or 1
+    float stop_error;        ///< tiles far below it are left out of further passes; 0: none is
 };
 
 struct RenderStatistics {
@@ -75,6 +76,7 @@ class Render {
     bool keeps_photons() const { return settings_.keep_photons; }
     PhotonCounts photon_counts() const { return counts_; }
     Indirect indirect() const { return indirect_; }
+    uint32_t light_samples() const { return light_samples_; }
     /// What the plan was made from; zero before the first pass or without a plan.
     const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
@@ -98,6 +100,7 @@ class Render {
     bool is_guided() const;
     bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
+    bool is_planned() const;
     void choose_radii();
     void make_plan();
     std::vector<Indirect> ways() const;
@@ -123,6 +126,7 @@ class Render {
     PixelSampler pixel_sampler_;
     bool receives_;  ///< whether any surface may scatter light diffusely, so that photons are of use
     Indirect indirect_;
+    uint32_t light_samples_;
     PhotonCounts counts_;
     PilotNoise pilot_noise_;
     std::optional<Radii> first_radii_;  ///< of pass 0, once chosen

@@ -10,8 +10,17 @@ namespace {
 
 /// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
 constexpr float largest_nested = 1.4f;
+/// The global map's kernel in pilot passes over the one that serves without a plan: blur shows better in a large one,
+/// and where there is none the large one has less noise.
+constexpr float pilot_radius = 1.41f;
 
 }  // namespace
+
+/// Whether photons, radius and more follow from pilot passes.
+bool Render::is_planned() const {
+    return settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
+           settings_.integrator == Integrator::photon_map;
+}
 
 void Render::choose_radii() {
     // A radius by hand holds for both maps.
@@ -27,6 +36,7 @@ void Render::choose_radii() {
     else if (is_chosen)
         radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
     if (is_chosen && is_nested()) radii.caustic *= largest_nested;
+    if (is_planned()) radii.indirect *= pilot_radius;
 
     // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
     Kernel largest = settings_.kernel;
@@ -77,7 +87,7 @@ std::vector<Pilot> Render::run_pilot_passes() {
     }
 
     // Costs are counted in rays: what else there is to do takes about so many times as long as a ray.
-    constexpr double storing_cost = 0.1;
+    constexpr double storing_cost = 0.1, light_sample_cost = 2;
     const auto cost = [](uint64_t traced, uint64_t kept, uint64_t count) {
         const auto emitted = static_cast<double>(count * PilotPixels::passes);
         return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
@@ -88,6 +98,8 @@ std::vector<Pilot> Render::run_pilot_passes() {
         pilot.pixels.find_noise(noise);
         for (const Pilot &other : pilots) noise.lack = std::max(noise.lack, pilot.pixels.squared_lack(other.pixels));
         noise.pixel_cost = frame * pilot.pixels.pixel_cost();
+        noise.light_cost = frame * light_sample_cost * pilot.pixels.light_samples();
+        if (settings_.light_samples > 0) noise.direct_variance = 0;  // they are not for the plan to choose
         if (pilot.indirect == Indirect::all_paths) {
             noise.camera_variance += pilot.pixels.hidden_caustic_variance(pilots.front().pixels);
         } else if (first_radii_->caustic > 0) {
@@ -104,9 +116,7 @@ std::vector<Pilot> Render::run_pilot_passes() {
 
 void Render::make_plan() {
     constexpr uint64_t most_pilot_photons = 1 << 13;
-    const bool is_planned = settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
-                            settings_.integrator == Integrator::photon_map;
-    if (!is_planned || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
+    if (!is_planned() || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
 
     // See what a few passes bring to some pixels.
     const PhotonCounts usual = counts_;
@@ -115,8 +125,8 @@ void Render::make_plan() {
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
-    const double photons_in_kernel =
-        usual_photons_in_kernel * static_cast<double>(counts_.global) / static_cast<double>(usual.global);
+    const double photons_in_kernel = double{usual_photons_in_kernel} * pilot_radius * pilot_radius *
+                                     static_cast<double>(counts_.global) / static_cast<double>(usual.global);
     pilots.front().noise.gather_cost =
         static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;
 
@@ -131,7 +141,8 @@ void Render::make_plan() {
         best = &pilot;
         plan = found;
     }
-    pilot_noise_ = best->noise;
+    pilot_noise_ = best->noise.with_light_samples(plan.light_samples);
+    light_samples_ *= plan.light_samples;
     indirect_ = best->indirect;
     counts_ = plan.counts;
     first_radii_->indirect *= plan.global_radius;

@@ -31,6 +31,15 @@ class Sequence {
   public:
     Sequence(uint64_t index, uint32_t seed) : index_(index), seed_(seed) {}
 
+    /// Points of four numbers in [0, 1) each, which together are as even as one sequence is.
+    struct Points {
+        uint64_t first;
+        uint32_t seed;
+
+        std::array<float, 4> operator[](uint32_t i) const { return sobol4(first + i, seed); }
+    };
+    /// The next so many points.
+    Points points(uint32_t count) { return {index_ * count, hash(seed_, group_++)}; }
     /// The next four numbers in [0, 1).
     std::array<float, 4> next() { return sobol4(index_, hash(seed_, group_++)); }
 

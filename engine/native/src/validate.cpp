@@ -149,6 +149,7 @@ void validate(const pm_settings &settings) {
     require(settings.brdf_direction <= PM_BRDF_MEAN,
             "unknown brdf_direction " + std::to_string(settings.brdf_direction));
     require(settings.max_bounces <= 1024, "max_bounces is beyond 1024");
+    require(settings.light_samples <= 1024, "light_samples is beyond 1024");
     require(settings.pixel_filter <= PM_PIXEL_BLACKMAN_HARRIS,
             "unknown pixel filter " + std::to_string(settings.pixel_filter));
     require_range(settings.pixel_filter_width, 0.01f, 100, "pixel_filter_width");
