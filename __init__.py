@@ -1,12 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon Maps: a render engine for Blender that follows light as photons."""
 
-from .engine import properties, render_engine
-from .operators import chart
-from .ui import chart_panel, compatibility, panels
+from .engine import overlay_properties, properties, render_engine
+from .operators import chart, search_disc
+from .ui import chart_panel, compatibility, overlay_panels, panels, photon_overlay
 
 #: In the order of registration; each has register() and unregister().
-MODULES = (properties, render_engine, chart, panels, chart_panel, compatibility)
+MODULES = (
+    properties,
+    overlay_properties,
+    render_engine,
+    chart,
+    search_disc,
+    panels,
+    chart_panel,
+    overlay_panels,
+    compatibility,
+    photon_overlay,
+)
 
 
 def register() -> None:

@@ -8,11 +8,11 @@ import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor, TimeoutError
 from operator import attrgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import bpy
 
-from . import last_render
+from . import last_photons, last_render
 from .map_choice import explain_maps
 from .messages import Messages
 from .passes import PASSES, PassInfo
@@ -21,10 +21,11 @@ from .summary import Summary, summarize
 from .user_settings import render_settings
 
 if TYPE_CHECKING:
-    from photon_maps_native import Statistics
+    from photon_maps_native import SceneData, Statistics
 
     from .session import Session
 
+Result = TypeVar("Result")
 POLL_SECONDS = 0.02  #: between two looks at Esc
 SHOW_SECONDS = 0.5  #: between two pictures on the way
 
@@ -90,6 +91,8 @@ def _render_layer(
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
         picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
         _step_until_done(engine, session, picture)
+        if depsgraph.scene.photon_maps_overlay.show:
+            _keep_photons(engine, session, scene, depsgraph, messages)
         statistics = session.statistics()
         maps = explain_maps(settings, statistics)
         engine.update_stats("", " ".join(maps))
@@ -157,8 +160,33 @@ def _step_until_done(engine: bpy.types.RenderEngine, session: Session, picture: 
             picture.show_now_and_then(session)
 
 
-def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[bool]) -> bool:
-    """Wait for a pass; cancel it when the user does."""
+def _keep_photons(
+    engine: bpy.types.RenderEngine,
+    session: Session,
+    scene: SceneData,
+    depsgraph: bpy.types.Depsgraph,
+    messages: Messages,
+) -> None:
+    """Keep the photons of the last pass for the overlay, unless the user cancels."""
+    from photon_maps_native import NativeError
+
+    if session.last_pass is None or engine.test_break():
+        return
+    engine.update_stats("", "Keeping the photons")
+    try:
+        with ThreadPoolExecutor(max_workers=1, thread_name_prefix="photon_maps") as worker:
+            snapshot = _wait(engine, session, worker.submit(session.snapshot))
+    except NativeError as error:  # the picture is whole
+        advice = "Switch the Photons overlay off, or lower the number of photons."
+        messages.add(depsgraph.scene.name, f"has no photons to show: {error}", advice)
+        return
+    if snapshot is not None:
+        kept = last_photons.photons_of(snapshot, session.last_pass, scene)
+        last_photons.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, kept)
+
+
+def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[Result]) -> Result:
+    """Wait for a pass, or what else a session is at; cancel it when the user does."""
     while True:
         try:
             return step.result(timeout=POLL_SECONDS)

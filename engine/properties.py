@@ -57,7 +57,7 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     light_samples: IntProperty(
         name="Light Samples",
         description="Shadow rays to each light in a pass, or to so many of more than eight lights, where the camera "
-        "sees a diffuse surface. More make direct light less grainy, and a pass longer; they pay where direct light is "
+        "sees a diffuse surface. More make direct light less grainy, and a pass slower; they pay where direct light is "
         "what is left of the noise",
         default=1,
         min=1,

@@ -7,7 +7,17 @@ import math
 import time
 
 import numpy as np
-from photon_maps_native import Camera, Device, NativeRender, NativeScene, SceneData, Statistics
+from photon_maps_native import (
+    Camera,
+    Device,
+    NativeError,
+    NativeRender,
+    NativeScene,
+    NativeSnapshot,
+    SceneData,
+    Statistics,
+    Status,
+)
 
 from .passes import PASSES, Pass
 from .settings import RenderSettings, Stop
@@ -120,6 +130,26 @@ class Session:
     def statistics(self) -> Statistics:
         """Return what has been done so far."""
         return self._render.statistics()
+
+    @property
+    def last_pass(self) -> int | None:
+        """The index of the pass that was rendered last; None before the first."""
+        return self._next_pass - 1 if self._next_pass > self.settings.pass_offset else None
+
+    def snapshot(self) -> NativeSnapshot | None:
+        """Trace the photons of the last pass again, with what they came from; a pass must have been rendered.
+
+        It takes about as long as tracing them and building their maps did, keeps the scene in memory until it is closed
+        and outlives the session.
+
+        :return: None if it was cancelled.
+        """
+        try:
+            return NativeSnapshot(self._render, self.last_pass)
+        except NativeError as error:
+            if error.status != Status.CANCELLED:
+                raise
+            return None
 
     def close(self) -> None:
         """Free everything the helper holds; calling it again does nothing."""

@@ -28,6 +28,7 @@ class Summary:
     cpu_seconds: float
     photons_emitted: int
     photons_stored: int
+    photons_stored_last: int  #: by the last pass: as many as the photon overlay has
     caustic_photons: int
     rays: int
     radius_first: float
@@ -75,6 +76,7 @@ def summarize(statistics: Statistics, messages: Messages, seconds: float, cpu_se
         cpu_seconds=round(cpu_seconds, 4),
         photons_emitted=statistics.photons_emitted,
         photons_stored=statistics.photons_stored,
+        photons_stored_last=statistics.photons_stored_last,
         caustic_photons=statistics.caustic_photons,
         rays=statistics.rays,
         radius_first=statistics.radius_first,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from . import last_render
+from . import last_photons, last_render
 from .changes import equal, find_changes
 from .messages import Messages
 from .user_settings import render_settings
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from photon_maps_native import Camera, SceneData
 
     from .export.kept import Kept
+    from .last_photons import LastPhotons
     from .settings import RenderSettings
     from .viewport_rendering import Picture
     from .viewport_worker import ViewportWorker
@@ -55,6 +56,7 @@ class Viewport:
         self._reach = 0.0
         self._filter: tuple = ()
         self._drawn: Picture | None = None
+        self._photons: LastPhotons | None = None
         self._texture: gpu.types.GPUTexture | None = None
         self._is_looking = False
 
@@ -107,6 +109,7 @@ class Viewport:
             return
         self._ask(context, depsgraph)
         picture = self._worker.picture
+        self._keep_photons(depsgraph)
         engine.update_stats("", self._worker.failure or (picture.status if picture else "Preparing"))
         if picture is not None and self._camera is not None:
             self._draw_picture(picture, self._camera.region)
@@ -121,7 +124,16 @@ class Viewport:
             self._camera = camera
         self._settings = render_settings(depsgraph.scene)  # not the evaluated ones: changing them evaluates nothing
         if self._camera is not None:
-            self._worker.show(Request(self._scene, self._settings, self._camera))
+            wants_photons = depsgraph.scene.photon_maps_overlay.show
+            self._worker.show(Request(self._scene, self._settings, self._camera, wants_photons))
+
+    def _keep_photons(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Keep new photons for the overlay of all views."""
+        photons = self._worker.photons
+        if photons is not self._photons:
+            self._photons = photons
+            if photons is not None:
+                last_photons.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, photons)
 
     def _draw_picture(self, picture: Picture, shown: tuple[int, int, int, int]) -> None:
         """Draw what of a picture lies in the part of the region that is shown, in scene linear colours."""
@@ -154,7 +166,8 @@ class Viewport:
             return None
         is_busy = self._worker.is_busy  # asked first: the last picture comes before the end
         try:
-            if self._worker.picture is not self._drawn or self._worker.failure:
+            has_photons = self._worker.photons is not self._photons
+            if self._worker.picture is not self._drawn or has_photons or self._worker.failure:
                 engine.tag_redraw()
         except ReferenceError:  # freed, though somebody still holds its Python side
             self._worker.close()

@@ -15,6 +15,7 @@ import numpy as np
 from photon_maps_native import Camera, SceneData
 from photon_maps_native.shader import Input, Op
 
+from .last_photons import LastPhotons, photons_of
 from .passes import Pass
 from .session import LoadedScene, Session
 from .settings import RenderSettings
@@ -34,6 +35,7 @@ class Request:
     scene: SceneData
     settings: RenderSettings
     camera: Camera
+    wants_photons: bool = False  #: so that they can be looked at one by one
 
     def shows_scene_of(self, other: Request | None) -> bool:
         """Say whether only the camera differs, if anything."""
@@ -62,17 +64,34 @@ class Rendering:
         self._factor = 1  #: pixels of the view across one of the picture
         self._pixel_seconds = math.inf  #: that a pixel of a pass takes
         self._shown = -math.inf  #: when
+        self.photons: LastPhotons | None = None  #: of the session's first pass, or of its last
 
     @property
     def is_done(self) -> bool:
-        return self._has_failed or (
+        return self._has_failed or (self._is_picture_done and not self._are_photons_due)
+
+    @property
+    def _is_picture_done(self) -> bool:
+        return (
             self.session is not None and not self.is_coarse_due and self._factor == 1 and self.session.progress >= 1.0
         )
+
+    @property
+    def _are_photons_due(self) -> bool:
+        """Say whether to take the photons: once for a first look, and those of the last pass; pictures come first."""
+        if not self.request.wants_photons or self.is_coarse_due or self.session.last_pass is None:
+            return False
+        taken = self.photons
+        return taken is None or (self._is_picture_done and taken.pass_index != self.session.last_pass)
 
     def follow(self, request: Request) -> None:
         """Begin what a request asks for, unless it is under way."""
         before, self.request = self.request, request
         if before is request:
+            return
+        if not request.wants_photons:
+            self.photons = None
+        if self.session is not None and request.shows_scene_of(before) and request.camera is before.camera:
             return
         # Shaders that ask for the view see that of a scene's first picture.
         if self.session is None or self._sees_view or not request.shows_scene_of(before):
@@ -84,10 +103,14 @@ class Rendering:
         self.is_coarse_due = True
 
     def step(self) -> bool:
-        """Render a pass.
+        """Render a pass, or take the photons of the last one.
 
         :return: False if it was cancelled.
         """
+        if self._are_photons_due:
+            return self._take_photons()
+        if self._is_picture_done:  # photons are no longer wanted
+            return True
         factor = self._coarse_factor() if self.is_coarse_due else self._finer_factor()
         if self.is_coarse_due or factor != self._factor:
             self._factor = factor
@@ -98,6 +121,13 @@ class Rendering:
         statistics = self.session.statistics()
         _, _, width, height = coarse_camera(self.request.camera, self._factor).region
         self._pixel_seconds = statistics.seconds_gather / (max(statistics.passes, 1) * width * height)
+        return True
+
+    def _take_photons(self) -> bool:
+        snapshot = self.session.snapshot()
+        if snapshot is None:
+            return False
+        self.photons = photons_of(snapshot, self.session.last_pass, self.request.scene)
         return True
 
     def _coarse_factor(self) -> int:
@@ -118,12 +148,12 @@ class Rendering:
     def picture_to_show(self) -> Picture | None:
         """Return the mean of the passes so far, if it is time to show it."""
         statistics, now = self.session.statistics(), time.monotonic()
-        if statistics.passes > 1 and not self.is_done and now - self._shown < SHOW_SECONDS:
+        if statistics.passes > 1 and not self._is_picture_done and now - self._shown < SHOW_SECONDS:
             return None
         self._shown = now
         x, y, width, height = (edge * self._factor for edge in coarse_camera(self.request.camera, self._factor).region)
         error = f" | error about {statistics.error:.2%}" if math.isfinite(statistics.error) else ""
-        done = " | done" if self.is_done else ""
+        done = " | done" if self._is_picture_done else ""
         status = f"Pass {statistics.passes}{error} | {statistics.photons_emitted:,} photons{done}"
         return Picture(self.session.read(Pass.COMBINED), (x, y, width, height), status)
 
@@ -138,7 +168,7 @@ class Rendering:
             self.session.close()
         if self._loaded is not None:
             self._loaded.close()
-        self.session = self._loaded = None
+        self.session = self._loaded = self.photons = None
 
 
 def coarse_camera(camera: Camera, factor: int) -> Camera:

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 
 from photon_maps_native import NativeError
 
+from .last_photons import LastPhotons
 from .session import LoadedScene, Session
 from .viewport_rendering import Picture, Rendering, Request
 
@@ -34,6 +35,7 @@ class ViewportWorker:
         self._is_idle = True
         self._is_paused = self._is_closed = False
         self._picture: Picture | None = None
+        self._photons: LastPhotons | None = None
         self._failure = ""
         self._thread: threading.Thread | None = None
         _workers.add(self)
@@ -42,7 +44,11 @@ class ViewportWorker:
         """Render this from now on; what is rendered for another view or scene stops."""
         with self._condition:
             before = self._request
-            if self._is_closed or (request.shows_scene_of(before) and request.camera is before.camera):
+            if self._is_closed or (
+                request.shows_scene_of(before)
+                and request.camera is before.camera
+                and request.wants_photons == before.wants_photons
+            ):
                 return
             self._request, self._failure, self._is_idle = request, "", False
             # A first picture is let finish: cancelled by each of many small moves, there would never be one.
@@ -60,6 +66,11 @@ class ViewportWorker:
     def picture(self) -> Picture | None:
         """The newest picture."""
         return self._picture
+
+    @property
+    def photons(self) -> LastPhotons | None:
+        """The photons of a pass, where they are wanted."""
+        return self._photons
 
     @property
     def failure(self) -> str:
@@ -87,7 +98,7 @@ class ViewportWorker:
         """End the thread as soon as it can; without waiting for it, and as often as one likes."""
         with self._condition:
             self._is_closed = True
-            self._request = self._picture = None
+            self._request = self._picture = self._photons = None
             self._cancel()
 
     def _cancel(self) -> None:
@@ -144,8 +155,9 @@ class ViewportWorker:
         if is_whole:
             picture = rendering.picture_to_show()
             with self._condition:
-                if picture is not None and not self._is_closed:
-                    self._picture = picture
+                if self._is_closed:
+                    return
+                self._picture, self._photons = picture or self._picture, rendering.photons
 
     def _fail(self, sentence: str) -> None:
         with self._condition:

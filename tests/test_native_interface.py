@@ -24,6 +24,7 @@ from photon_maps_native import (
     NativeError,
     NativeRender,
     NativeScene,
+    NativeSnapshot,
     SceneData,
     Status,
     World,
@@ -179,12 +180,18 @@ def test_null_handles_and_pointers_are_refused() -> None:
         "pm_render_photon_count": (null, 0, None),
         "pm_render_photons": (null, 0, 0, 0, None),
         "pm_render_irradiance": (null, 0, 0, None, None, None),
+        "pm_snapshot_create": (null, 0, None),
+        "pm_snapshot_count": (null, 0, None),
+        "pm_snapshot_photons": (null, 0, 0, 0, None),
+        "pm_snapshot_segments": (null, 0, None, 0, None, 0, None),
+        "pm_snapshot_received": (null, None, 0, None),
+        "pm_snapshot_probe": (null, None, None, None),
     }
     for name, arguments in calls.items():
         with pytest.raises(NativeError, match="is null") as caught:
             library.call(name, *arguments)
         assert caught.value.status == Status.INVALID_ARGUMENT
-    for name in ("pm_device_release", "pm_scene_release", "pm_render_release"):
+    for name in ("pm_device_release", "pm_scene_release", "pm_render_release", "pm_snapshot_release"):
         getattr(library.load_library(), name)(null)
 
 
@@ -199,7 +206,8 @@ def test_another_camera_is_checked_like_the_first_and_one_that_is_refused_change
 
 
 def test_negative_counts_are_refused() -> None:
-    picture = Picture(plain(), box_filtered())
+    picture = Picture(plain(), box_filtered()).run(1)
+    snapshot = NativeSnapshot(picture.render, 0)
     scene_handle = NativeScene(Device(), plain())
     number, pixel, index = ctypes.c_uint64(-1), (ctypes.c_float * 3)(0, 0, 1), ctypes.c_uint32()
     structs = library.structs
@@ -228,6 +236,8 @@ def test_negative_counts_are_refused() -> None:
         ("pm_render_read", picture.render, 0, pixel, number),
         ("pm_render_photons", picture.render, 0, 0, number, (structs.PmPhoton * 1)()),
         ("pm_render_irradiance", picture.render, 0, number, pixel, pixel, pixel),
+        ("pm_snapshot_photons", snapshot, 0, 0, number, (structs.PmTracedPhoton * 1)()),
+        ("pm_snapshot_segments", snapshot, 0, (ctypes.c_uint32 * 1)(), number, None, 0, ctypes.byref(number)),
     ]
     for name, owner, *arguments in calls:
         with pytest.raises(NativeError) as caught:

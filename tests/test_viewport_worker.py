@@ -83,6 +83,14 @@ class StageSession(StageScene):
         self.done += 1
         return True
 
+    @property
+    def last_pass(self) -> int | None:
+        return self.done - 1 if self.done else None
+
+    def snapshot(self) -> object:
+        self.stage.log.append("photons")
+        return object()
+
     def cancel(self) -> None:
         self.cancelled.set()
 
@@ -148,6 +156,33 @@ def test_dear_pictures_become_finer_step_by_step(stage: Stage) -> None:
     worker.show(replace(wanted, camera=camera((1, -5, 3), (0, 0, 0), SIZE)))
     wait_for(lambda: not worker.is_busy)
     assert stage.log[7:] == ["pass 5", "pass 10", "pass 20", "pass 40", *["pass 80"] * 3]
+
+
+def test_photons_are_taken_for_a_first_look_and_of_the_last_pass(stage: Stage) -> None:
+    worker, wanted = stage.worker(), request(wants_photons=True)
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log == ["load", "pass 10", "photons", *["pass 80"] * stage.passes, "photons"]
+    assert worker.photons.pass_index == stage.passes - 1
+    # From elsewhere they are the same.
+    worker.show(replace(wanted, camera=camera((1, -5, 3), (0, 0, 0), SIZE)))
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log.count("photons") == 2
+
+
+def test_photons_that_are_wanted_later_cost_no_pass(stage: Stage) -> None:
+    worker, wanted = stage.worker(), request()
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    assert worker.photons is None
+    before, picture = list(stage.log), worker.picture
+    worker.show(replace(wanted, wants_photons=True))
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log == [*before, "photons"] and worker.photons is not None
+    assert (worker.picture.pixels == picture.pixels).all()
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy and worker.photons is None)
+    assert stage.log == [*before, "photons"]
 
 
 def test_nothing_runs_once_it_is_done(stage: Stage) -> None:

@@ -61,6 +61,7 @@ def read_light(lamp: bpy.types.Object, matrix: Matrix, visibility: int, messages
         transform=transform,
         power=tuple(float(channel) for channel in power),
         visibility=Ray(visibility),
+        name=lamp.name,
         **shape,
     )
 

@@ -39,6 +39,7 @@ LEFT_OUT = {
     "GPENCIL": "a grease pencil",
     "GREASEPENCIL": "a grease pencil",
 }
+SUN_NAME = "Sun of the world"
 CLEAR_TRANSFORM = "Clear its location, rotation and scale."
 #: Instances between two looks at Esc.
 CANCEL_INTERVAL = 256
@@ -121,7 +122,7 @@ def read_contents(
         meshes=rows.meshes,
         instances=_instances(rows),
         materials=rows.materials.materials,
-        lights=rows.lights + [replace(sun, visibility=visibility) for sun in resources.suns.values()],
+        lights=rows.lights + [replace(sun, visibility=visibility, name=SUN_NAME) for sun in resources.suns.values()],
         camera=None,
         world=World(rows.materials.add(surroundings), visibility),
         images=resources.images,
@@ -262,6 +263,7 @@ def _instances(rows: _Rows) -> Instances:
         slot_materials=np.array(rows.slot_materials, dtype=np.uint32),
         visibility=np.array(rows.visibility, dtype=np.uint32)[keep],
         properties=np.array(rows.properties, dtype=np.float32).reshape(-1, 6)[keep],
+        names=tuple(rows.names[index] for index in np.flatnonzero(keep)),
     )
 
 

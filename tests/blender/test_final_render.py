@@ -23,8 +23,9 @@ from tests.blender.scenes import (
 )
 
 FIELDS = [
-    *("version", "passes", "seconds", "cpu_seconds", "photons_emitted", "photons_stored", "caustic_photons", "rays"),
-    *("radius_first", "radius_last", "peak_memory_bytes", "error_estimate", "plan", "maps", "messages"),
+    *("version", "passes", "seconds", "cpu_seconds", "photons_emitted", "photons_stored", "photons_stored_last"),
+    *("caustic_photons", "rays", "radius_first", "radius_last", "peak_memory_bytes", "error_estimate", "plan"),
+    *("maps", "messages"),
 ]
 
 

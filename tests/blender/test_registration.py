@@ -28,7 +28,8 @@ def traces():
             for engine in bpy.types.RenderEngine.__subclasses__()
             if engine.is_registered
         },
-        "scene": hasattr(bpy.types.Scene, "photon_maps"),
+        "scene": hasattr(bpy.types.Scene, "photon_maps") or hasattr(bpy.types.Scene, "photon_maps_overlay"),
+        "drawn": len(getattr(bpy.types.VIEW3D_PT_overlay.draw, "_draw_funcs", ())),
         "view_layer": hasattr(bpy.types.ViewLayer, "photon_maps"),
         "types": {name for name in dir(bpy.types) if name.startswith(("PHOTON_MAPS", "PhotonMaps"))},
     }
@@ -37,9 +38,10 @@ def traces():
 def test_register_and_unregister_leave_nothing(extension):
     there = traces()
     assert "PHOTON_MAPS" in there["engines"] and there["scene"] and there["view_layer"] and len(there["types"]) > 5
-    for _ in range(3):
+    for _ in range(50):
         extension.unregister()
         gone = traces()
+        assert gone["drawn"] == there["drawn"] - 1
         assert not any((gone["compatible"], gone["scene"], gone["view_layer"], gone["types"]))
         assert "PHOTON_MAPS" not in gone["engines"]
         extension.register()
@@ -83,9 +85,16 @@ def test_names_that_do_not_change(scene, extension):
     assert extension.engine.render_engine.PhotonMapsEngine.bl_label == MANIFEST["name"]
 
 
-@pytest.mark.parametrize("group", ["PhotonMapsSceneSettings", "PhotonMapsViewLayerSettings"])
-def test_every_tooltip_speaks_of_cost(extension, group):
-    properties = getattr(extension.engine.properties, group).bl_rna.properties
+@pytest.mark.parametrize(
+    ("module", "group"),
+    [
+        ("properties", "PhotonMapsSceneSettings"),
+        ("properties", "PhotonMapsViewLayerSettings"),
+        ("overlay_properties", "PhotonMapsOverlaySettings"),
+    ],
+)
+def test_every_tooltip_speaks_of_cost(extension, module, group):
+    properties = getattr(getattr(extension.engine, module), group).bl_rna.properties
     for name in set(properties.keys()) - {"rna_type", "name", "stop", "estimate"}:
         text = properties[name].description.lower()
         words = ("speed", "fast", "slow", "time", "tuning")

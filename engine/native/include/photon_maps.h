@@ -101,12 +101,18 @@ typedef enum pm_pass {
 typedef enum pm_photon_kind {
     PM_PHOTONS_DIRECT = 0,   /* straight from a light */
     PM_PHOTONS_INDIRECT = 1, /* after one diffuse bounce or more */
-    PM_PHOTONS_CAUSTIC = 2   /* after specular bounces only, one or more */
+    PM_PHOTONS_CAUSTIC = 2,  /* after specular bounces only, one or more */
+    PM_PHOTONS_SHADOW = 3    /* where a light's shadow lies, with use_shadow_photons; only a snapshot tells them */
 } pm_photon_kind;
 
-typedef struct pm_device pm_device; /* the loaded Embree */
-typedef struct pm_scene pm_scene;   /* triangles, instances, materials, lights, world: photon_maps_scene.h */
-typedef struct pm_render pm_render; /* one picture of a scene */
+/* What sent a photon out: the index of a lamp; that of an instance that shines, with PM_SOURCE_INSTANCE added; or the
+ * world. */
+enum { PM_SOURCE_INSTANCE = 0x40000000, PM_SOURCE_WORLD = 0x7fffffff };
+
+typedef struct pm_device pm_device;     /* the loaded Embree */
+typedef struct pm_scene pm_scene;       /* triangles, instances, materials, lights, world: photon_maps_scene.h */
+typedef struct pm_render pm_render;     /* one picture of a scene */
+typedef struct pm_snapshot pm_snapshot; /* the photons of one pass, and what they came from */
 
 typedef struct pm_settings {
     uint32_t struct_size;
@@ -174,8 +180,9 @@ typedef struct pm_statistics {
     float pilot_camera_noise;
     float pilot_global_noise;
     float pilot_caustic_noise;
-    float done;             /* share of the picture that gets no further samples */
-    uint32_t light_samples; /* as set or chosen */
+    float done;                   /* share of the picture that gets no further samples */
+    uint32_t light_samples;       /* as set or chosen */
+    uint64_t photons_stored_last; /* by the latest pass */
 } pm_statistics;
 
 typedef struct pm_photon {
@@ -185,6 +192,55 @@ typedef struct pm_photon {
     float flux[3];      /* W */
     uint32_t bounce;    /* bounces before this hit, 255 at most */
 } pm_photon;
+
+/* A photon with what it came from. Of PM_PHOTONS_SHADOW position, source and instance are known; the rest is 0. */
+typedef struct pm_traced_photon {
+    pm_photon photon;
+    uint32_t source;   /* the light: see PM_SOURCE_WORLD */
+    uint32_t instance; /* that it landed on */
+    uint32_t number;   /* among the photons that its pass emitted for the map of its kind */
+} pm_traced_photon;
+
+/* A photon's way from one place to the next. */
+typedef struct pm_photon_segment {
+    float start[3];
+    float end[3];
+    float flux[3];   /* W */
+    uint32_t bounce; /* bounces before `start` */
+    uint32_t source;
+    uint32_t number;
+} pm_photon_segment;
+
+/* What of a light's photons met an instance, whether or not its materials keep photons. */
+typedef struct pm_received {
+    uint32_t instance;
+    uint32_t source;
+    uint32_t is_caustic; /* 1: of the photons that are aimed at what can focus light, and end at their first diffuse
+                            scattering; 0: of those for the global map */
+    uint32_t reserved;
+    uint64_t arrived; /* photons that met it */
+    uint64_t stored;  /* those that were stored there */
+    double flux[3];   /* W, of those that met it */
+} pm_received;
+
+/* What a map's estimate is made from. */
+typedef struct pm_map_probe {
+    float radius; /* of the disc; 0 without a map */
+    uint32_t photons;
+    float irradiance[3];     /* W/m2, at PM_ESTIMATE_ADAPTIVE by the largest radius */
+    float standard_error[3]; /* W/m2, as if photons fell independently of each other */
+} pm_map_probe;
+
+typedef struct pm_probe {
+    uint32_t struct_size;
+    uint32_t is_hit;        /* 0: the ray meets nothing, and the rest is 0 */
+    uint32_t keeps_photons; /* 0: the surface scatters nothing diffusely, so that no map is asked */
+    uint32_t instance;
+    float position[3];
+    float normal[3]; /* geometric, on the side that is seen */
+    pm_map_probe global_map;
+    pm_map_probe caustic_map;
+} pm_probe;
 
 /* Returns PM_ABI_VERSION as compiled; a caller built for another one must not go on. */
 PM_API uint32_t pm_abi_version(void);
@@ -247,6 +303,32 @@ PM_API pm_status pm_render_photons(const pm_render *render, uint32_t kind, uint6
  * normals, at the radius, estimate and filter of that pass (the seed report's equation 4). */
 PM_API pm_status pm_render_irradiance(const pm_render *render, uint32_t kind, uint64_t count, const float *points,
                                       const float *normals, float *irradiance);
+/* Traces the photons of pass `index` again, at least one pass having been rendered, with what they came from. What the
+ * maps of a render need is kept as small as can be; photons are a function of scene, settings and index. A snapshot
+ * does not depend on the render, keeps its scene in memory, and may be asked by any number of threads.
+ * pm_render_cancel makes it return PM_CANCELLED. */
+PM_API pm_status pm_snapshot_create(pm_render *render, uint32_t index, pm_snapshot **snapshot);
+/* Counts the photons of a kind; of all kinds but PM_PHOTONS_SHADOW together there are photons_stored_last of the
+ * pass. */
+PM_API pm_status pm_snapshot_count(const pm_snapshot *snapshot, uint32_t kind, uint64_t *count);
+/* Gets `count` photons of a kind from number `first` on, in the order of their emission. The first ones are a fair
+ * sample of all: photons follow a low-discrepancy sequence. */
+PM_API pm_status pm_snapshot_photons(const pm_snapshot *snapshot, uint32_t kind, uint64_t first, uint64_t count,
+                                     pm_traced_photon *photons);
+/* Gets the ways of `count` photons of the global or the caustic map, by their numbers: up to `capacity` segments, those
+ * of a photon in their order; segment_count is what there are. */
+PM_API pm_status pm_snapshot_segments(const pm_snapshot *snapshot, uint32_t is_caustic, const uint32_t *numbers,
+                                      uint64_t count, pm_photon_segment *segments, uint64_t capacity,
+                                      uint64_t *segment_count);
+/* Gets what instances received of each light: up to `capacity` rows; row_count is what there are. */
+PM_API pm_status pm_snapshot_received(const pm_snapshot *snapshot, pm_received *rows, uint64_t capacity,
+                                      uint64_t *row_count);
+/* Finds the first surface along a ray, with a unit direction, that the camera sees and that hides most of what lies
+ * behind it, and estimates the irradiance there as the pass did. */
+PM_API pm_status pm_snapshot_probe(const pm_snapshot *snapshot, const float *origin, const float *direction,
+                                   pm_probe *probe);
+/* Releases a snapshot; null is ignored. */
+PM_API void pm_snapshot_release(pm_snapshot *snapshot);
 /* Releases a render; null is ignored. */
 PM_API void pm_render_release(pm_render *render);
 

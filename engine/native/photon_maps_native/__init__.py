@@ -3,6 +3,17 @@
 
 from .errors import NativeError, Status
 from .library import Device, NativeRender, NativeScene
+from .photons import (
+    SOURCE_INSTANCE,
+    SOURCE_WORLD,
+    MapProbe,
+    PhotonArrays,
+    PhotonKind,
+    PhotonSegments,
+    Probe,
+    Received,
+    TracedPhotons,
+)
 from .scene_data import (
     MAX_COORDINATE,
     MAX_RADIANCE,
@@ -20,7 +31,6 @@ from .scene_data import (
     LightType,
     Material,
     Mesh,
-    PhotonArrays,
     Projection,
     Ray,
     SceneData,
@@ -30,10 +40,13 @@ from .scene_data import (
     World,
 )
 from .shader import Shader, diffuse, emitter
+from .snapshot import NativeSnapshot
 
 __all__ = [
     "MAX_COORDINATE",
     "MAX_RADIANCE",
+    "SOURCE_INSTANCE",
+    "SOURCE_WORLD",
     "Alpha",
     "Attribute",
     "Camera",
@@ -47,20 +60,27 @@ __all__ = [
     "Interpolation",
     "Light",
     "LightType",
+    "MapProbe",
     "Material",
     "Mesh",
     "NativeError",
     "NativeRender",
     "NativeScene",
+    "NativeSnapshot",
     "PhotonArrays",
+    "PhotonKind",
+    "PhotonSegments",
+    "Probe",
     "Projection",
     "Ray",
+    "Received",
     "SceneData",
     "Shader",
     "Statistics",
     "Status",
     "Table",
     "Texture",
+    "TracedPhotons",
     "World",
     "diffuse",
     "emitter",

@@ -22,5 +22,8 @@ class NativeError(RuntimeError):
     """The helper refused or failed; the message says why."""
 
     def __init__(self, status: Status, message: str) -> None:
-        super().__init__(message)
+        super().__init__(status, message)  # so that it can be sent from another process
         self.status = status
+
+    def __str__(self) -> str:
+        return str(self.args[1])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds and loads the compiled helper, checks it, and wraps its calls and errors.
 
-With structs.py and convert.py the only file that knows ctypes.
+With structs.py, convert.py and snapshot.py the only file that knows ctypes.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ from .convert import (
     to_texture,
 )
 from .errors import NativeError, Status
-from .scene_data import Camera, PhotonArrays, SceneData, Statistics
+from .photons import PhotonArrays
+from .scene_data import Camera, SceneData, Statistics
 
 ABI_VERSION = 6
 
@@ -110,12 +111,26 @@ def declare(library: ctypes.CDLL) -> None:
         "pm_render_photon_count": [handle, c_uint32, POINTER(uint64)],
         "pm_render_photons": [handle, c_uint32, uint64, uint64, POINTER(structs.PmPhoton)],
         "pm_render_irradiance": [handle, c_uint32, uint64, *[structs.FloatPointer] * 3],
+        "pm_snapshot_create": [handle, c_uint32, POINTER(handle)],
+        "pm_snapshot_count": [handle, c_uint32, POINTER(uint64)],
+        "pm_snapshot_photons": [handle, c_uint32, uint64, uint64, POINTER(structs.PmTracedPhoton)],
+        "pm_snapshot_segments": [
+            handle,
+            c_uint32,
+            structs.UintPointer,
+            uint64,
+            POINTER(structs.PmPhotonSegment),
+            uint64,
+            POINTER(uint64),
+        ],
+        "pm_snapshot_received": [handle, POINTER(structs.PmReceived), uint64, POINTER(uint64)],
+        "pm_snapshot_probe": [handle, structs.FloatPointer, structs.FloatPointer, POINTER(structs.PmProbe)],
     }
     for name, arguments in functions.items():
         function = getattr(library, name)
         function.argtypes = arguments
         function.restype = c_uint32
-    for name in ("pm_device_release", "pm_scene_release", "pm_render_release"):
+    for name in ("pm_device_release", "pm_scene_release", "pm_render_release", "pm_snapshot_release"):
         function = getattr(library, name)
         function.argtypes = [handle]
         function.restype = None
@@ -281,8 +296,7 @@ class NativeRender(Handle):
         call("pm_render_photon_count", self.handle, kind, byref(count))
         native = (structs.PmPhoton * count.value)()
         call("pm_render_photons", self.handle, kind, 0, count, native)
-        rows = np.ctypeslib.as_array(native)
-        return PhotonArrays(rows["position"], rows["direction"], rows["normal"], rows["flux"], rows["bounce"])
+        return photon_arrays(np.ctypeslib.as_array(native))
 
     def irradiance(self, kind: int, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Return the irradiance (N, 3) in W/m2 that photons of a kind bring to N points with unit normals."""
@@ -292,3 +306,8 @@ class NativeRender(Handle):
         arguments = (floats(points), floats(normals), floats(result))
         call("pm_render_irradiance", self.handle, kind, len(points), *arguments)
         return result
+
+
+def photon_arrays(rows: np.ndarray) -> PhotonArrays:
+    """Return rows of pm_photon as arrays."""
+    return PhotonArrays(rows["position"], rows["direction"], rows["normal"], rows["flux"], rows["bounce"])

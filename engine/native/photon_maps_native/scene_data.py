@@ -126,6 +126,7 @@ class Instances:
     slot_materials: np.ndarray  #: (S,) uint32, index into SceneData.materials
     visibility: np.ndarray | None = None  #: (I,) uint32 of Ray; None: visible to all
     properties: np.ndarray | None = None  #: (I, 6) float32: the object's RGBA colour, index, random number; None: 0
+    names: tuple[str, ...] = ()  #: of the objects, one an instance, for those who report of them
 
 
 @dataclass(frozen=True)
@@ -180,6 +181,7 @@ class Light:
     spread: float = float(np.pi)  #: area lights: full angle in radians
     soft_falloff: bool = False  #: POINT, SPOT: Blender's Soft Falloff
     visibility: Ray = Ray.ALL & ~Ray.CAMERA
+    name: str = ""  #: for those who report of it
 
 
 @dataclass(frozen=True)
@@ -259,14 +261,4 @@ class Statistics:
     pilot_caustic_noise: float
     done: float  #: share of the picture that gets no further samples
     light_samples: int  #: of each light, or choices among many, at the first diffuse vertices; as set or chosen
-
-
-@dataclass
-class PhotonArrays:
-    """Photons as they landed; one row a photon."""
-
-    positions: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))
-    directions: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: of travel
-    normals: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: on the side that was hit
-    flux: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))  #: W
-    bounces: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))  #: before this hit, 255 at most
+    photons_stored_last: int  #: by the latest pass

@@ -226,6 +226,7 @@ class PmStatistics(SizedStructure):
         ("pilot_caustic_noise", c_float),
         ("done", c_float),
         ("light_samples", c_uint32),
+        ("photons_stored_last", c_uint64),
     ]
 
 
@@ -238,4 +239,63 @@ class PmPhoton(ctypes.Structure):
         ("normal", c_float * 3),
         ("flux", c_float * 3),
         ("bounce", c_uint32),
+    ]
+
+
+class PmTracedPhoton(ctypes.Structure):
+    """pm_traced_photon"""
+
+    _fields_ = [("photon", PmPhoton), ("source", c_uint32), ("instance", c_uint32), ("number", c_uint32)]
+
+
+class PmPhotonSegment(ctypes.Structure):
+    """pm_photon_segment"""
+
+    _fields_ = [
+        ("start", c_float * 3),
+        ("end", c_float * 3),
+        ("flux", c_float * 3),
+        ("bounce", c_uint32),
+        ("source", c_uint32),
+        ("number", c_uint32),
+    ]
+
+
+class PmReceived(ctypes.Structure):
+    """pm_received"""
+
+    _fields_ = [
+        ("instance", c_uint32),
+        ("source", c_uint32),
+        ("is_caustic", c_uint32),
+        ("reserved", c_uint32),
+        ("arrived", c_uint64),
+        ("stored", c_uint64),
+        ("flux", c_double * 3),
+    ]
+
+
+class PmMapProbe(ctypes.Structure):
+    """pm_map_probe"""
+
+    _fields_ = [
+        ("radius", c_float),
+        ("photons", c_uint32),
+        ("irradiance", c_float * 3),
+        ("standard_error", c_float * 3),
+    ]
+
+
+class PmProbe(SizedStructure):
+    """pm_probe"""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("is_hit", c_uint32),
+        ("keeps_photons", c_uint32),
+        ("instance", c_uint32),
+        ("position", c_float * 3),
+        ("normal", c_float * 3),
+        ("global_map", PmMapProbe),
+        ("caustic_map", PmMapProbe),
     ]

@@ -91,6 +91,11 @@ struct pm_scene {
     }
 };
 
+struct pm_snapshot {
+    std::shared_ptr<pm::SceneState> state;
+    std::unique_ptr<const pm::PhotonSnapshot> snapshot;
+};
+
 struct pm_render {
     pm_render(std::shared_ptr<pm::SceneState> scene, const pm::Camera &camera, const pm::RenderSettings &settings)
         : state(std::move(scene)), render(state->scene, *state->lights, *state->emission, camera, settings) {}

@@ -80,6 +80,7 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->caustic_photon_count = counts.caustic;
         statistics->photons_emitted = s.photons_emitted;
         statistics->photons_stored = s.photons_stored;
+        statistics->photons_stored_last = s.photons_stored_last;
         statistics->rays = s.rays.rays;
         statistics->memory_bytes = s.peak_memory_bytes;
         statistics->radius_first = s.radius_first;
@@ -130,12 +131,7 @@ pm_status pm_render_photons(const pm_render *render, uint32_t kind, uint64_t fir
         const std::vector<pm::Photon> &source = render->photons(kind);
         pm::require(first <= source.size() && count <= source.size() - first,
                     "there are only " + std::to_string(source.size()) + " photons of this kind");
-        for (uint64_t i = 0; i < count; ++i) {
-            const pm::Photon &photon = source[first + i];
-            const pm::Vec3 d = pm::unpack_direction(photon.direction), n = pm::unpack_normal(photon.normal);
-            const pm::Vec3 p = photon.position, f = photon.flux;
-            photons[i] = {{p.x, p.y, p.z}, {d.x, d.y, d.z}, {n.x, n.y, n.z}, {f.x, f.y, f.z}, photon.bounce()};
-        }
+        for (uint64_t i = 0; i < count; ++i) photons[i] = pm::to_pm_photon(source[first + i]);
     });
 }
 

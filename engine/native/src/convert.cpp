@@ -105,6 +105,12 @@ View to_view(const pm_camera &source) {
     return view;
 }
 
+pm_photon to_pm_photon(const Photon &photon) {
+    const Vec3 d = unpack_direction(photon.direction), n = unpack_normal(photon.normal);
+    const Vec3 p = photon.position, f = photon.flux;
+    return {{p.x, p.y, p.z}, {d.x, d.y, d.z}, {n.x, n.y, n.z}, {f.x, f.y, f.z}, photon.bounce()};
+}
+
 RenderSettings to_settings(const pm_settings &source) {
     RenderSettings settings;
     settings.integrator = static_cast<Integrator>(source.integrator);

@@ -25,5 +25,6 @@ Lamp to_lamp(const pm_light &source);
 Camera to_camera(const pm_camera &source);
 View to_view(const pm_camera &source);
 RenderSettings to_settings(const pm_settings &source);
+pm_photon to_pm_photon(const Photon &photon);
 
 }  // namespace photon_maps

@@ -91,12 +91,16 @@ std::optional<PhotonEmission> Emission::emit(const Choices &choices, std::span<c
     if (source < lamp_count) {
         photon = emit_from_lamp(lights_.lamps()[source], sphere_, casters, u);
         photon.source = source;
+        photon.label = static_cast<uint32_t>(source);
     } else if (source == world_source()) {
         photon = emit_from_world(casters, u);
         photon.source = lights_.world_source();
+        photon.label = PM_SOURCE_WORLD;
     } else {
-        photon = emit_from_triangle(lights_.emissive_triangles()[source - lamp_count], casters, u);
+        const EmissiveTriangles::Emitter emitter = lights_.emissive_triangles()[source - lamp_count];
+        photon = emit_from_triangle(emitter, casters, u);
         photon.source = lights_.triangles_source();
+        photon.label = PM_SOURCE_INSTANCE | emitter.instance;
     }
     photon.flux = photon.flux / static_cast<float>(choices.probability(source));
     return photon;

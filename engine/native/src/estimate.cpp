@@ -93,7 +93,32 @@ Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Qu
         return gather.sum();
     });
     const float area = kernel.norm() * region.share();
-    return {sum.flux / area, sum.photons, sum.weight / area};
+    return {sum.flux / area, sum.photons, sum.weight / area, kernel.radius};
+}
+
+Vec3 irradiance_variance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &asked) {
+    Kernel kernel = asked;
+    const KernelRegion region = region_of(edges, query, kernel);
+    const PhotonArrays &photons = map.photons();
+    const CandidateTest test(photons, query, kernel.radius, region.barriers());
+    Vec3 sum;
+    const auto add_block = [&](size_t i, Int8 mask) {
+        Candidates found;
+        if (!test(i, mask, found)) return;
+        Float8 weight = kernel.weights(found.distance_squared);
+        if (test.is_smooth()) weight *= shading_weights(load(&photons.direction[i]), query);
+        for (size_t lane = 0; lane < lanes; ++lane) {
+            if (!found.mask[lane]) continue;
+            const size_t p = i + lane;
+            const Vec3 part = Vec3{photons.red[p], photons.green[p], photons.blue[p]} * weight[lane];
+            sum += part * part;
+        }
+    };
+    map.visit_range(query.position, kernel.radius, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
+    });
+    const float area = kernel.norm() * region.share();
+    return sum / (area * area);
 }
 
 Kernel kernel_of_nearest(const PhotonMap &map, const Query &query, size_t count, const Kernel &largest) {

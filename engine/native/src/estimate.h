@@ -24,6 +24,7 @@ struct Estimate {
     Vec3 value;            ///< irradiance in W/m2, or radiance in W/(m2 sr)
     uint32_t photons = 0;  ///< that counted
     float density = 0;     ///< of the photons that counted, by their kernel's weights, 1/m2
+    float radius = 0;      ///< of the disc: the kernel's, or less among very many edges
 };
 
 /// Estimates the irradiance at a point: E = sum(w flux) / (norm * share) over the photons within the radius, on the
@@ -34,6 +35,11 @@ struct Estimate {
 /// @param edges built for radii no smaller than the kernel's
 /// @throws std::invalid_argument if the kernel is larger
 Estimate estimate_photons(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel);
+
+/// Returns the variance of the irradiance that estimate_photons() finds, as if photons fell independently of each other
+/// (a compound Poisson process: Var E = sum((w flux)^2) / (norm * share)^2).
+/// @param query without a shading
+Vec3 irradiance_variance(const PhotonMap &map, const EdgeIndex &edges, const Query &query, const Kernel &kernel);
 
 /// Returns a kernel for the nearest photons: as large as the next one is far, which itself does not count - by all of
 /// them the estimate would be too bright by 1 / count (Moore and Yackel 1977).

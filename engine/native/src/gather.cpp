@@ -5,15 +5,27 @@ namespace photon_maps {
 
 namespace {
 
-/// What the estimate asks for: irradiance, or with a shading the radiance that it makes of each photon.
-Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
+/// What is asked of a map, and over which disc.
+struct DiscQuery {
+    Query query;
+    Kernel kernel;
+    float share;  ///< of the disc that the surface fills
+};
+
+DiscQuery disc_query(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
     Query query{hit.position, hit.normal, closure_normal, false, shading, shading && gather.mean_direction};
     Kernel kernel = gather.kernel;
     if (gather.nearest_count > 0) kernel = kernel_of_nearest(*gather.map, query, gather.nearest_count, kernel);
     const Coverage::Disc disc = gather.coverage->disc(hit, kernel.radius);
     kernel.radius = disc.radius;
     query.is_bent = disc.share != 1;
-    Estimate estimate = estimate_photons(*gather.map, *gather.edges, query, kernel);
+    return {query, kernel, disc.share};
+}
+
+/// What the estimate asks for: irradiance, or with a shading the radiance that it makes of each photon.
+Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
+    const DiscQuery disc = disc_query(gather, hit, closure_normal, shading);
+    Estimate estimate = estimate_photons(*gather.map, *gather.edges, disc.query, disc.kernel);
     estimate.value = estimate.value / disc.share;
     estimate.density /= disc.share;
     return estimate;
@@ -70,6 +82,14 @@ struct DiffuseParts {
 };
 
 }  // namespace
+
+ProbedIrradiance probe_irradiance(const PhotonGather &gather, const SurfacePoint &hit) {
+    if (gather.empty()) return {};
+    const DiscQuery disc = disc_query(gather, hit, hit.shading_normal, nullptr);
+    const Estimate found = estimate_photons(*gather.map, *gather.edges, disc.query, disc.kernel);
+    const Vec3 variance = irradiance_variance(*gather.map, *gather.edges, disc.query, disc.kernel);
+    return {found.radius, found.photons, found.value / disc.share, variance / (disc.share * disc.share)};
+}
 
 Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading) {
     Gathered gathered;

@@ -26,6 +26,16 @@ struct Gathered {
     float density = 0;  ///< photons that counted, 1/m2
 };
 
+/// An estimate of irradiance with what it was made from.
+struct ProbedIrradiance {
+    float radius = 0;
+    uint32_t photons = 0;
+    Vec3 irradiance, variance;  ///< W/m2, and its square
+};
+
+/// Estimates the irradiance on the side that is seen, as gather_radiance() does for a Lambertian surface.
+ProbedIrradiance probe_irradiance(const PhotonGather &gather, const SurfacePoint &hit);
+
 /// Gathers the photons on the side that is seen and, for what shines through, on the other side.
 Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading);
 /// The same by the eight radii of which the kernel's is the largest. Every photon is weighed by itself.

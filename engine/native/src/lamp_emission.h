@@ -19,6 +19,7 @@ struct PhotonEmission {
     float falloff_radius_squared = 0;
     uint32_t visibility = ~0u;  ///< of the light: bits 1 << pm_ray
     size_t source = 0;          ///< of Lights
+    uint32_t label = 0;         ///< the light, as pm_traced_photon has it
 };
 
 /// The random numbers of one photon, in [0, 1).

@@ -56,4 +56,20 @@ struct Photon {
 };
 static_assert(sizeof(Photon) == 32);
 
+/// What a photon came from, for those who look at photons one by one. An estimate needs none of it, so that it is not
+/// kept with the photons of a render but traced again.
+struct PhotonOrigin {
+    uint32_t number;    ///< of the photon among those emitted in its pass
+    uint32_t source;    ///< the light, as pm_traced_photon has it
+    uint32_t instance;  ///< that it hit
+};
+
+/// A photon's way from one place to the next.
+struct PhotonSegment {
+    Vec3 start, end;
+    Vec3 flux;  ///< W
+    PhotonOrigin origin;
+    uint32_t bounce;  ///< bounces before `start`
+};
+
 }  // namespace photon_maps

@@ -33,7 +33,9 @@ class PhotonPath {
     PhotonPath(const Scene &scene, const PhotonTracing &tracing, Sequence &sequence, TracedPhotons &traced)
         : scene_(scene), tracing_(tracing), sequence_(sequence), traced_(traced) {}
 
-    void trace(const PhotonEmission &emission) {
+    void trace(const PhotonEmission &emission, uint64_t number) {
+        number_ = static_cast<uint32_t>(number);
+        label_ = emission.label;
         ray_ = emission.ray;
         flux_ = emission.flux / static_cast<float>(tracing_.count);
         // Up to its first scattering a photon goes the way of a shadow ray, and passes what lets those pass.
@@ -54,13 +56,24 @@ class PhotonPath {
             add(traced_.balance.escaped, flux_);
             return false;
         }
+        if (tracing_.records_segments)
+            traced_.segments.push_back({ray_.origin, hit.position, flux_, origin(hit), state_.depth});
         state_.length += hit.distance;
+        if (tracing_.records_origins) add_received(hit);
         const uint32_t kind = 1u << (state_.depth == 0 ? PM_RAY_SHADOW : PM_RAY_DIFFUSE);
         if (!(scene_.instances[hit.instance].visibility & kind)) pass_by(hit);
         if (tracing_.leaves_shadow_photons && state_.depth == 0) mark_shadows(hit);
         const Shading shading = shade(scene_, hit, -ray_.direction, state_);
         record(hit, shading);
         return scatter(hit, shading);
+    }
+
+    PhotonOrigin origin(const SurfacePoint &hit) const { return {number_, label_, hit.instance}; }
+
+    void add_received(const SurfacePoint &hit) {
+        Received &received = traced_.received[{hit.instance, label_}];
+        ++received.arrived;
+        add(received.flux, flux_);
     }
 
     /// An object that shadow rays, or the rays that would come here, do not see is lit, and so is what lies behind it:
@@ -78,6 +91,7 @@ class PhotonPath {
     void mark_shadows(const SurfacePoint &hit) {
         const auto source = static_cast<uint32_t>(source_);
         traced_.shadow_photons.push_back({hit.position, source & 0x7fffffff, 1});
+        if (tracing_.records_origins) traced_.shadow_origins.push_back(origin(hit));
         if (casts_shadow_ || !(scene_.instances[hit.instance].visibility & 1u << PM_RAY_SHADOW)) return;
         casts_shadow_ = true;
         constexpr int most_surfaces = 64;
@@ -88,6 +102,7 @@ class PhotonPath {
             ++traced_.rays;
             if (!scene_.intersect(beyond, last)) return;
             traced_.shadow_photons.push_back({last.position, source & 0x7fffffff, 0});
+            if (tracing_.records_origins) traced_.shadow_origins.push_back(origin(last));
         }
     }
 
@@ -110,6 +125,9 @@ class PhotonPath {
         traced_.photons[kind].push_back({hit.position, flux_,
                                          pack_normal(hit.normal, std::min<uint32_t>(state_.depth, 255u)),
                                          pack_direction(ray_.direction)});
+        if (!tracing_.records_origins) return;
+        traced_.origins[kind].push_back(origin(hit));
+        ++traced_.received[{hit.instance, label_}].stored;
     }
 
     /// Sends the photon on, or ends it.
@@ -185,12 +203,18 @@ class PhotonPath {
     RayState state_;
     uint32_t source_visibility_ = ~0u;  ///< of the light or object that sent the photon here: bits 1 << pm_ray
     bool was_diffuse_ = false;
-    size_t source_ = 0;          ///< of Lights
-    bool casts_shadow_ = false;  ///< a surface stopped the light; what lies behind is marked
+    size_t source_ = 0;                ///< of Lights
+    uint32_t number_ = 0, label_ = 0;  ///< as PhotonOrigin has them
+    bool casts_shadow_ = false;        ///< a surface stopped the light; what lies behind is marked
 };
 
 std::optional<PhotonEmission> emit(const Emission &emission, PhotonPurpose purpose, Sequence &sequence) {
     return purpose == PhotonPurpose::caustic ? emission.emit_caustic(sequence) : emission.emit(sequence);
+}
+
+template <typename T>
+void append(std::vector<T> &list, const std::vector<T> &more) {
+    list.insert(list.end(), more.begin(), more.end());
 }
 
 /// Appends the photons of chunks, in their order.
@@ -205,11 +229,16 @@ void append(TracedPhotons &all, const std::vector<TracedPhotons> &chunks, double
             const double expected = share < 1 ? margin * static_cast<double>(count) / share : 0;
             list.reserve(std::max(count, static_cast<size_t>(expected)));
         }
-        for (const TracedPhotons &chunk : chunks)
-            list.insert(list.end(), chunk.photons[kind].begin(), chunk.photons[kind].end());
+        for (const TracedPhotons &chunk : chunks) {
+            append(list, chunk.photons[kind]);
+            append(all.origins[kind], chunk.origins[kind]);
+        }
     }
     for (const TracedPhotons &chunk : chunks) {
-        all.shadow_photons.insert(all.shadow_photons.end(), chunk.shadow_photons.begin(), chunk.shadow_photons.end());
+        append(all.shadow_photons, chunk.shadow_photons);
+        append(all.shadow_origins, chunk.shadow_origins);
+        append(all.segments, chunk.segments);
+        for (const auto &[key, received] : chunk.received) all.received[key] += received;
         all.balance += chunk.balance;
         all.rays += chunk.rays;
     }
@@ -227,6 +256,21 @@ FluxBalance &FluxBalance::operator+=(const FluxBalance &other) {
     return *this;
 }
 
+Received &Received::operator+=(const Received &other) {
+    arrived += other.arrived;
+    stored += other.stored;
+    for (size_t c = 0; c < 3; ++c) flux[c] += other.flux[c];
+    return *this;
+}
+
+void trace_photon(const Scene &scene, const Emission &emission, const PhotonTracing &tracing, uint64_t number,
+                  TracedPhotons &traced) {
+    Sequence sequence(tracing.first + number, tracing.seed);
+    const std::optional<PhotonEmission> photon = emit(emission, tracing.purpose, sequence);
+    if (!photon || !(max_component(photon->flux) > 0)) return;
+    PhotonPath(scene, tracing, sequence, traced).trace(*photon, number);
+}
+
 TracedPhotons trace_photons(const Scene &scene, const Emission &emission, const PhotonTracing &tracing,
                             const std::atomic<bool> *cancel) {
     // Trace chunks of photons, each into its own lists; join them in the order of emission. Not all at once, for the
@@ -240,10 +284,7 @@ TracedPhotons trace_photons(const Scene &scene, const Emission &emission, const 
             const uint64_t begin = (first + c) * chunk_size, end = std::min(begin + chunk_size, tracing.count);
             for (uint64_t i = begin; i < end; ++i) {
                 throw_if_cancelled(cancel);
-                Sequence sequence(tracing.first + i, tracing.seed);
-                const std::optional<PhotonEmission> photon = emit(emission, tracing.purpose, sequence);
-                if (!photon || !(max_component(photon->flux) > 0)) continue;
-                PhotonPath(scene, tracing, sequence, chunks[c]).trace(*photon);
+                trace_photon(scene, emission, tracing, i, chunks[c]);
             }
         });
         append(all, chunks, static_cast<double>(last) / static_cast<double>(chunk_count));

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <atomic>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "emission.h"
@@ -25,9 +27,22 @@ struct FluxBalance {
     FluxBalance &operator+=(const FluxBalance &other);
 };
 
+/// What of a light's photons met an instance, whether or not it keeps photons.
+struct Received {
+    uint64_t arrived = 0, stored = 0;
+    Flux flux{};  ///< of those that arrived
+
+    Received &operator+=(const Received &other);
+};
+using ReceivedBySource = std::map<std::pair<uint32_t, uint32_t>, Received>;  ///< by instance and source
+
 /// The photons of one pass, by pm_photon_kind, in the order of their emission.
 struct TracedPhotons {
     std::array<std::vector<Photon>, 3> photons;
+    std::array<std::vector<PhotonOrigin>, 3> origins;  ///< of the photons, if they are asked for; as are the next two
+    std::vector<PhotonOrigin> shadow_origins;
+    ReceivedBySource received;
+    std::vector<PhotonSegment> segments;  ///< if they are asked for
     std::vector<ShadowPhoton> shadow_photons;
     FluxBalance balance;  ///< of the photons that are not aimed
     uint64_t rays = 0;
@@ -53,7 +68,13 @@ struct PhotonTracing {
     int threads;
     bool records_direct = false;  ///< L D as well, which only a final gather needs: lights are sampled elsewhere
     bool leaves_shadow_photons = false;
+    bool records_origins = false, records_segments = false;
 };
+
+/// Traces one photon and adds what it leaves.
+/// @param number of the photon in its pass, below tracing.count
+void trace_photon(const Scene &scene, const Emission &emission, const PhotonTracing &tracing, uint64_t number,
+                  TracedPhotons &traced);
 
 /// Traces photons; the result does not depend on the number of threads.
 /// @throws Cancelled once `cancel` is set

@@ -25,12 +25,12 @@ struct SeenPoint {
 };
 
 /// Photons that no pass will trace again.
-struct Pilot {
+struct PilotPhotons {
     PhotonMap map;
     double share;  ///< of the photons of a pass
 
-    Pilot(const Scene &scene, const Emission &emission, const PhotonTracing &pass, pm_photon_kind kind,
-          const std::atomic<bool> *cancel) {
+    PilotPhotons(const Scene &scene, const Emission &emission, const PhotonTracing &pass, pm_photon_kind kind,
+                 const std::atomic<bool> *cancel) {
         PhotonTracing tracing = pass;
         tracing.first = 0;
         tracing.count = std::min(pass.count, max_pilot_photons);
@@ -85,7 +85,7 @@ std::vector<float> radii_around_photons(const PhotonMap &map, double k, float ma
 
 /// A radius that holds k pilot photons, scaled to one that holds the wanted number of a pass: their number in a kernel
 /// grows with the square of its radius and with the emitted photons.
-float scaled(float radius, double wanted, const Pilot &pilot, double k) {
+float scaled(float radius, double wanted, const PilotPhotons &pilot, double k) {
     return static_cast<float>(static_cast<double>(radius) * std::sqrt(wanted * pilot.share / k));
 }
 
@@ -101,7 +101,7 @@ float shrunk_radius(float first_radius, uint32_t index) {
 
 float choose_indirect_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                              const PhotonTracing &pass, const std::atomic<bool> *cancel) {
-    const Pilot pilot(scene, emission, pass, PM_PHOTONS_INDIRECT, cancel);
+    const PilotPhotons pilot(scene, emission, pass, PM_PHOTONS_INDIRECT, cancel);
     const float max_radius = scene.bounds().radius();
 
     // Find what radius holds k of them around points that the camera sees; where it sees too little to judge by, around
@@ -123,7 +123,7 @@ float choose_indirect_radius(const Scene &scene, const Emission &emission, const
 
 float choose_caustic_radius(const Scene &scene, const Emission &emission, const Camera &camera,
                             const PhotonTracing &pass, const std::atomic<bool> *cancel) {
-    const Pilot pilot(scene, emission, pass, PM_PHOTONS_CAUSTIC, cancel);
+    const PilotPhotons pilot(scene, emission, pass, PM_PHOTONS_CAUSTIC, cancel);
 
     // Around the photons, not the pixels: it is where they lie densely that a caustic is sharp.
     const float max_radius = scene.bounds().radius() / 8;

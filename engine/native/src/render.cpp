@@ -149,18 +149,28 @@ PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
     return PhotonMap(photons, settings_.threads, &cancel_);
 }
 
+/// What a pass traces, for the maps that there are.
+std::vector<PhotonTracing> Render::tracings(uint32_t index) const {
+    std::vector<PhotonTracing> wanted;
+    if (first_radii_->indirect > 0) {
+        wanted.push_back(tracing(PhotonPurpose::global, index));
+        if (indirect_ == Indirect::gather) --wanted.back().max_bounces;  // the gathering ray is a bounce more
+    }
+    if (first_radii_->caustic > 0) wanted.push_back(tracing(PhotonPurpose::caustic, index));
+    return wanted;
+}
+
 TracedPhotons Render::trace(uint32_t index) {
     TracedPhotons photons;
-    if (first_radii_->indirect > 0) {
-        PhotonTracing global = tracing(PhotonPurpose::global, index);
-        if (indirect_ == Indirect::gather) --global.max_bounces;  // the gathering ray is a bounce more
-        photons = trace_photons(scene_, emission_, global, &cancel_);
-    }
-    if (first_radii_->caustic > 0) {
-        TracedPhotons aimed = trace_photons(scene_, emission_, tracing(PhotonPurpose::caustic, index), &cancel_);
-        photons.photons[PM_PHOTONS_CAUSTIC] = std::move(aimed.photons[PM_PHOTONS_CAUSTIC]);
-        photons.rays += aimed.rays;
-        photons.caustic_rays = aimed.rays;
+    for (const PhotonTracing &wanted : tracings(index)) {
+        TracedPhotons traced = trace_photons(scene_, emission_, wanted, &cancel_);
+        if (wanted.purpose == PhotonPurpose::global) {
+            photons = std::move(traced);
+            continue;
+        }
+        photons.photons[PM_PHOTONS_CAUSTIC] = std::move(traced.photons[PM_PHOTONS_CAUSTIC]);
+        photons.rays += traced.rays;
+        photons.caustic_rays = traced.rays;
     }
     return photons;
 }
@@ -174,13 +184,13 @@ std::shared_ptr<const TracedPass> Render::trace_pass(uint32_t index, const Radii
     pass->photons_stored = pass->photons.size();
     pass->caustic_photons = pass->photons[PM_PHOTONS_CAUSTIC].size();
     const Stopwatch watch(spent.seconds_build);
-    pass->maps = build_maps(pass->photons, radii);
+    pass->maps = build_maps(pass->photons, radii, settings_.keep_photons);
     if (!settings_.keep_photons) pass->photons.photons = {};
     return pass;
 }
 
 /// Builds what pass 2 asks of the photons, whose lists end here unless they are kept.
-Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) const {
+Maps Render::build_maps(TracedPhotons &photons, const Radii &radii, bool keeps_lists) const {
     Maps maps;
     if (is_guided() && radii.indirect > 0) maps.importance = importance_of(photons);
     if (marks_shadows() && radii.indirect > 0) maps.shadow_photons.emplace(photons.shadow_photons, radii.indirect / 2);
@@ -196,7 +206,7 @@ Maps Render::build_maps(TracedPhotons &photons, const Radii &radii) const {
     const auto build = [&](PhotonMap &map, pm_photon_kind kind, const std::vector<Photon> &list) {
         map = map_of(list);
         count_memory(photons.size());
-        if (!settings_.keep_photons) photons.photons[kind] = {};  // the map has copies
+        if (!keeps_lists) photons.photons[kind] = {};  // the map has copies
     };
     if (settings_.integrator != Integrator::photon_map) return maps;
     if (radii.indirect > 0 && indirect_ == Indirect::gather) {
@@ -225,8 +235,7 @@ PhotonMaps Render::gathers_of(const Maps &maps, const Radii &radii) const {
     const auto gather = [&](const PhotonMap &map, float radius) -> PhotonGather {
         Kernel kernel = settings_.kernel;
         kernel.radius = radius;
-        const Coverage *coverage = coverage_ ? &*coverage_ : nullptr;
-        return {&map, &edges_, coverage, kernel, settings_.nearest_count, settings_.mean_direction};
+        return {&map, edges_.get(), coverage_.get(), kernel, settings_.nearest_count, settings_.mean_direction};
     };
     return {gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
 }
@@ -294,13 +303,14 @@ void Render::render_into(Film &pass_film, uint32_t index, RenderStatistics &spen
     }
 
     // Keep the photons for those who ask, and add up what the pass took.
-    const size_t memory = scene_.memory_bytes() + edges_.memory_bytes() + film_.memory_bytes() +
+    const size_t memory = scene_.memory_bytes() + edges_->memory_bytes() + film_.memory_bytes() +
                           pass_film.memory_bytes() + maps_memory + (coverage_ ? coverage_->memory_bytes() : 0) +
                           (error_ ? error_->memory_bytes() : 0);
     RenderStatistics &total = statistics_;
     total.peak_memory_bytes = std::max(total.peak_memory_bytes, memory);
     total.photons_emitted += (radii.indirect > 0 ? counts_.global : 0) + (radii.caustic > 0 ? counts_.caustic : 0);
     total.photons_stored += pass->photons_stored;
+    total.photons_stored_last = pass->photons_stored;
     total.caustic_photons += pass->caustic_photons;
     total.rays += spent.rays;
     total.rays.rays += pass->photons.rays;
@@ -316,15 +326,6 @@ void Render::render_into(Film &pass_film, uint32_t index, RenderStatistics &spen
     total.seconds_gather += spent.seconds_gather;
     if (settings_.keep_photons) last_pass_ = pass;
     last_radii_ = radii;
-}
-
-Vec3 Render::irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const {
-    Kernel kernel = settings_.kernel;
-    kernel.radius = kind == PM_PHOTONS_CAUSTIC ? last_radii_.caustic : last_radii_.indirect;
-    if (map.size() == 0 || !(kernel.radius > 0)) return {};
-    const Query query{point, normal, normal};
-    if (settings_.nearest_count > 0) kernel = kernel_of_nearest(map, query, settings_.nearest_count, kernel);
-    return estimate_photons(map, edges_, query, kernel).value;
 }
 
 }  // namespace photon_maps

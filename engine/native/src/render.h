@@ -10,6 +10,7 @@
 #include "camera_pass.h"
 #include "film.h"
 #include "map_cache.h"
+#include "photon_snapshot.h"
 #include "photon_trace.h"
 #include "plan.h"
 
@@ -39,6 +40,7 @@ struct RenderSettings {
 
 struct RenderStatistics {
     uint64_t photons_emitted = 0, photons_stored = 0, caustic_photons = 0;
+    uint64_t photons_stored_last = 0;  ///< of the latest pass
     RayCounts rays;
     size_t peak_memory_bytes = 0;
     float radius_first = 0, radius_last = 0;
@@ -62,6 +64,10 @@ class Render {
     /// @throws Cancelled after cancel(); the film then holds the passes finished before
     void render_pass(uint32_t index);
 
+    /// Traces the photons of a pass again, with what they came from; has_begun() must hold.
+    /// @throws Cancelled after cancel()
+    std::unique_ptr<const PhotonSnapshot> snapshot(uint32_t index);
+
     /// Makes the running pass, or the next one if none is running, throw Cancelled.
     void cancel() { cancel_ = true; }
 
@@ -73,6 +79,8 @@ class Render {
         return static_cast<float>(std::ranges::count(left_out_, true)) / static_cast<float>(left_out_.size());
     }
     const RenderStatistics &statistics() const { return statistics_; }
+    /// Whether photon counts and radii are chosen.
+    bool has_begun() const { return first_radii_.has_value(); }
     bool keeps_photons() const { return settings_.keep_photons; }
     PhotonCounts photon_counts() const { return counts_; }
     Indirect indirect() const { return indirect_; }
@@ -100,6 +108,7 @@ class Render {
     bool is_guided() const;
     bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
+    std::vector<PhotonTracing> tracings(uint32_t index) const;
     bool is_planned() const;
     void choose_radii();
     void make_plan();
@@ -110,7 +119,7 @@ class Render {
     Radii radii_of_pass(uint32_t index) const;
     TracedPhotons trace(uint32_t index);
     std::shared_ptr<const TracedPass> trace_pass(uint32_t index, const Radii &radii, RenderStatistics &spent);
-    Maps build_maps(TracedPhotons &photons, const Radii &radii) const;
+    Maps build_maps(TracedPhotons &photons, const Radii &radii, bool keeps_lists) const;
     PhotonImportance importance_of(const TracedPhotons &photons) const;
     PhotonMaps gathers_of(const Maps &maps, const Radii &radii) const;
     void prepare(RenderStatistics &spent);
@@ -130,8 +139,8 @@ class Render {
     PhotonCounts counts_;
     PilotNoise pilot_noise_;
     std::optional<Radii> first_radii_;  ///< of pass 0, once chosen
-    EdgeIndex edges_;
-    std::optional<Coverage> coverage_;  ///< made along with the first radii, if there is a map
+    std::shared_ptr<const EdgeIndex> edges_ = std::make_shared<EdgeIndex>();
+    std::shared_ptr<const Coverage> coverage_;  ///< made along with the first radii, if there is a map
     Film film_;
     std::optional<ErrorEstimate> error_;
     std::vector<bool> left_out_;  ///< tiles that get no more samples

@@ -43,16 +43,17 @@ void Render::choose_radii() {
     largest.radius = std::max(radii.indirect, radii.caustic);
     if (largest.radius > 0) {
         const std::span<const FeatureEdge> edges = scene_.feature_edges();
-        edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
+        auto index = std::make_shared<EdgeIndex>(std::vector<FeatureEdge>(edges.begin(), edges.end()), largest.radius);
         constexpr double bearable_crowding = 1024;
         constexpr int most_halvings = 12;
-        for (int halving = 0; is_chosen && edges_.crowding() > bearable_crowding && halving < most_halvings;
+        for (int halving = 0; is_chosen && index->crowding() > bearable_crowding && halving < most_halvings;
              ++halving) {
             throw_if_cancelled(&cancel_);
             largest.radius /= 2;
-            edges_ = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
+            *index = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
         }
-        coverage_.emplace(scene_, edges_, largest);
+        edges_ = std::move(index);
+        coverage_ = std::make_shared<Coverage>(scene_, *edges_, largest);
     }
     first_radii_ = {std::min(radii.indirect, largest.radius), std::min(radii.caustic, largest.radius)};
 }
@@ -80,7 +81,7 @@ std::vector<Pilot> Render::run_pilot_passes() {
         caustic_rays += photons.caustic_rays;
         caustic_stored += photons[PM_PHOTONS_CAUSTIC].size();
         stored += photons.size() - photons[PM_PHOTONS_CAUSTIC].size();
-        const Maps maps = build_maps(photons, *first_radii_);
+        const Maps maps = build_maps(photons, *first_radii_, false);
         const PhotonMaps gathers = gathers_of(maps, *first_radii_);
         for (Pilot &pilot : pilots)
             pilot.pixels.add(camera_pass(camera_, maps, gathers, pilot.indirect, index), &cancel_);

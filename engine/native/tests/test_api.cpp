@@ -32,6 +32,7 @@ struct Releaser {
 using Device = std::unique_ptr<pm_device, Releaser<pm_device_release>>;
 using Scene = std::unique_ptr<pm_scene, Releaser<pm_scene_release>>;
 using Render = std::unique_ptr<pm_render, Releaser<pm_render_release>>;
+using Snapshot = std::unique_ptr<pm_snapshot, Releaser<pm_snapshot_release>>;
 
 constexpr std::array<float, 12> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
@@ -196,6 +197,60 @@ void test_a_cancel_from_another_thread_ends_a_pass(Checks &checks, pm_device *de
     ended = true;
 }
 
+/// Makes a snapshot and asks it everything; returns the photons of the pass.
+uint64_t ask_snapshot(Checks &checks, pm_render *render, uint32_t index) {
+    pm_snapshot *created = nullptr;
+    checks.that(pm_snapshot_create(render, index, &created) == PM_OK, pm_last_error());
+    const Snapshot snapshot(created);
+    uint64_t stored = 0, received = 0;
+    for (uint32_t kind = 0; kind <= PM_PHOTONS_SHADOW; ++kind) {
+        uint64_t count = 0;
+        checks.that(pm_snapshot_count(snapshot.get(), kind, &count) == PM_OK, pm_last_error());
+        std::vector<pm_traced_photon> photons(count);
+        checks.that(pm_snapshot_photons(snapshot.get(), kind, 0, count, photons.data()) == PM_OK, pm_last_error());
+        if (kind != PM_PHOTONS_SHADOW) stored += count;
+        std::vector<uint32_t> numbers;
+        for (const pm_traced_photon &photon : photons) numbers.push_back(photon.number);
+        if (kind == PM_PHOTONS_SHADOW || count == 0) continue;
+        const uint32_t is_caustic = kind == PM_PHOTONS_CAUSTIC;
+        std::vector<pm_photon_segment> segments(3);
+        uint64_t segment_count = 0;
+        checks.that(pm_snapshot_segments(snapshot.get(), is_caustic, numbers.data(), count, segments.data(), 3,
+                                         &segment_count) == PM_OK,
+                    pm_last_error());
+        checks.that(segment_count >= count, "every photon came some way");
+    }
+    std::vector<pm_received> rows(1000);
+    uint64_t row_count = 0;
+    checks.that(pm_snapshot_received(snapshot.get(), rows.data(), rows.size(), &row_count) == PM_OK, pm_last_error());
+    checks.that(row_count <= rows.size(), "there are few instances and lights");
+    for (uint64_t i = 0; i < row_count; ++i) received += rows[i].stored;
+    checks.that(received == stored, "instances received what is stored");
+    pm_probe probe{};
+    probe.struct_size = sizeof probe;
+    const std::array<float, 3> origin = {0.5f, 0.4f, 0.6f}, down = {0, 0, -1};
+    checks.that(pm_snapshot_probe(snapshot.get(), origin.data(), down.data(), &probe) == PM_OK, pm_last_error());
+    for (const pm_map_probe &map : {probe.global_map, probe.caustic_map})
+        checks.that(std::isfinite(map.irradiance[0]) && !(map.standard_error[0] < 0), "an estimate is a number");
+    return stored;
+}
+
+void test_a_snapshot_tells_the_photons_of_a_pass(Checks &checks, pm_device *device) {
+    Arrays arrays;
+    arrays.settings.use_shadow_photons = 1;
+    pm_status status{};
+    const Render render = make_render(device, arrays, status);
+    pm_snapshot *none = nullptr;
+    checks.that(pm_snapshot_create(render.get(), 0, &none) == PM_INVALID_OPERATION, "there is no pass yet");
+    for (uint32_t pass = 0; pass < 2; ++pass) checks.that(pm_render_pass(render.get(), pass) == PM_OK, pm_last_error());
+    pm_statistics statistics{};
+    statistics.struct_size = sizeof statistics;
+    checks.that(pm_render_statistics(render.get(), &statistics) == PM_OK, pm_last_error());
+    const uint64_t first = ask_snapshot(checks, render.get(), 0), second = ask_snapshot(checks, render.get(), 1);
+    checks.that(second == statistics.photons_stored_last, "the photons are those of the pass");
+    checks.that(first + second == statistics.photons_stored, "and of those before");
+}
+
 /// A number from the worst there are.
 float garbage(std::mt19937 &random) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -313,6 +368,8 @@ void test_any_shader_renders(Checks &checks, pm_device *device) {
         checks.that(pm_render_read(render.get(), PM_PASS_COMBINED, pixels.data(), pixels.size()) == PM_OK, "is read");
         checks.that(all_finite(pixels), "shader " + std::to_string(trial) + " is finite");
 
+        ask_snapshot(checks, render.get(), 0);
+
         // The same photons from elsewhere, in a picture of another size.
         pm_camera camera = arrays.camera;
         camera.transform[3] = 0.6f;
@@ -340,6 +397,7 @@ int main() {
     if (!device) return checks.report();
     test_a_room_is_rendered_and_read(checks, device.get());
     test_photons_are_read_and_estimated(checks, device.get());
+    test_a_snapshot_tells_the_photons_of_a_pass(checks, device.get());
     test_a_cancel_from_another_thread_ends_a_pass(checks, device.get());
     test_garbage_is_refused_or_rendered(checks, device.get());
     test_any_shader_renders(checks, device.get());
