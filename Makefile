@@ -185,7 +185,7 @@ test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 test-gui: .venv/test.stamp $(ZIP)
 	@mkdir -p build
 	bash tests/gui/blender.sh "$${BLENDER_ROOT:-build/blender-trixie}"
-	timeout 1800 $(PYTHON) -m pytest tests/gui -o pythonpath=.
+	timeout 3000 $(PYTHON) -m pytest tests/gui -o pythonpath=.
 
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m campaign

@@ -2,21 +2,23 @@
 """Photon Maps: a render engine for Blender that follows light as photons."""
 
 from .engine import overlay_properties, properties, render_engine
-from .operators import chart, search_disc
-from .ui import chart_panel, compatibility, overlay_panels, panels, photon_overlay
+from .operators import chart, denoising, messages, presets, search_disc
+from .ui import (
+    chart_panel,
+    compatibility,
+    data_panels,
+    messages_panel,
+    overlay_panels,
+    panels,
+    photon_overlay,
+    refresh,
+)
 
 #: In the order of registration; each has register() and unregister().
 MODULES = (
-    properties,
-    overlay_properties,
-    render_engine,
-    chart,
-    search_disc,
-    panels,
-    chart_panel,
-    overlay_panels,
-    compatibility,
-    photon_overlay,
+    *(properties, overlay_properties, render_engine),
+    *(chart, denoising, messages, presets, search_disc),
+    *(panels, messages_panel, chart_panel, data_panels, overlay_panels, compatibility, photon_overlay, refresh),
 )
 
 

@@ -83,7 +83,7 @@ def capture(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Captured
 
 @contextmanager
 def _spare_slot() -> Iterator[None]:
-    """Have Blender render to a slot of its own; show the one before again."""
+    """Have Blender render to a slot of its own; show the one before again, and leave none behind where that can be."""
     result = bpy.data.images.get("Render Result")
     if result is None:
         yield
@@ -95,8 +95,29 @@ def _spare_slot() -> Iterator[None]:
     try:
         yield
     finally:
+        _remove(result)
         slots.active_index = before
-        slot.clear(None)
+
+
+def _remove(result: bpy.types.Image) -> None:
+    """Remove the active slot by an Image Editor; without one it stays, and is taken again the next time.
+
+    The slot holds Blender's last render, and of those who may remove that only an Image Editor knows its scene.
+    """
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type != "IMAGE_EDITOR":
+                continue
+            region = next(region for region in area.regions if region.type == "WINDOW")
+            space = area.spaces.active
+            shown, space.image = space.image, result
+            try:
+                with bpy.context.temp_override(window=window, area=area, region=region):
+                    is_removed = bpy.ops.image.remove_render_slot() == {"FINISHED"}
+            finally:
+                space.image = shown
+            if is_removed:
+                return
 
 
 @contextmanager

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor, TimeoutError
@@ -17,6 +16,7 @@ from .map_choice import explain_maps
 from .messages import Messages
 from .passes import PASSES, PassInfo
 from .settings import RenderSettings, Stop
+from .status import status_line
 from .summary import Summary, summarize
 from .user_settings import render_settings
 
@@ -43,9 +43,9 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     if capture.is_wanted():
         capture.take(engine, depsgraph)
         return
-    messages, maps = Messages(), ()
+    messages, maps, summary = Messages(), (), None
     try:
-        maps = _render_layer(engine, depsgraph, messages)
+        maps, summary = _render_layer(engine, depsgraph, messages)
     except NativeError as error:
         _fail(engine, f"The render stopped: {error}")
     except Exception as error:
@@ -53,7 +53,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         _fail(engine, f"The render stopped: {type(error).__name__}: {error}")
         raise
     finally:
-        said = last_render.LastRender(tuple(messages), maps)
+        said = last_render.LastRender(tuple(messages), maps, summary)
         last_render.remember(depsgraph.scene.session_uid, depsgraph.view_layer.name, said)
 
 
@@ -69,8 +69,8 @@ def _fail(engine: bpy.types.RenderEngine, sentence: str) -> None:
 
 def _render_layer(
     engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, messages: Messages
-) -> tuple[str, ...]:
-    """Render, and return which maps were built and why others were not."""
+) -> tuple[tuple[str, ...], Summary | None]:
+    """Render, and return which maps were built and why others were not, and the summary; None if nothing was begun."""
     from .export.scene import read_scene
     from .session import Session
 
@@ -78,7 +78,7 @@ def _render_layer(
     camera = engine.camera_override
     if camera is None or camera.type != "CAMERA":  # Blender lets any object be the active camera
         _fail(engine, "The scene has no camera. Add one and make it the active camera.")
-        return ()
+        return (), None
     passes = wanted_passes(depsgraph.view_layer_eval)
     for info in passes:
         engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
@@ -86,7 +86,7 @@ def _render_layer(
     engine.update_stats("", "Reading the scene")
     scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages, engine.test_break)
     if scene is None:
-        return ()
+        return (), None
     settings = render_settings(depsgraph.scene_eval)
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
         picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
@@ -105,7 +105,7 @@ def _render_layer(
     if bpy.app.background:
         sys.stdout.write(summary.line() + "\n")
         sys.stdout.flush()
-    return maps
+    return maps, summary
 
 
 def _say_what_was_missed(scene: str, settings: RenderSettings, statistics: Statistics, messages: Messages) -> None:
@@ -152,11 +152,13 @@ class _Picture:
 
 def _step_until_done(engine: bpy.types.RenderEngine, session: Session, picture: _Picture) -> None:
     """Render pass after pass in a thread of its own, while this one watches for Esc and shows the picture."""
+    started = time.monotonic()
+    engine.update_stats("", "First pass")
     with ThreadPoolExecutor(max_workers=1, thread_name_prefix="photon_maps") as worker:
         while session.progress < 1.0 and not engine.test_break():
             if not _wait(engine, session, worker.submit(session.step)):
                 return
-            _tell(engine, session)
+            _tell(engine, session, time.monotonic() - started)
             picture.show_now_and_then(session)
 
 
@@ -195,17 +197,9 @@ def _wait(engine: bpy.types.RenderEngine, session: Session, step: Future[Result]
                 session.cancel()  # said again at every look, for the pass may only be starting
 
 
-def _tell(engine: bpy.types.RenderEngine, session: Session) -> None:
-    settings, statistics = session.settings, session.statistics()
+def _tell(engine: bpy.types.RenderEngine, session: Session, seconds: float) -> None:
+    statistics, progress = session.statistics(), session.progress
     megabytes = statistics.memory_bytes / 2**20
-    limit = {
-        Stop.PASSES: f" of {settings.passes}",
-        Stop.TIME: f", {settings.time_limit:g} s in all",
-        Stop.ERROR: f", until the error is {settings.error_target:.2%}",
-    }[settings.stop]
-    error = f" | error about {statistics.error:.2%}" if math.isfinite(statistics.error) else ""
-    engine.update_progress(session.progress)
+    engine.update_progress(progress)
     engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
-    engine.update_stats(
-        "", f"Pass {statistics.passes}{limit}{error} | {statistics.photons_emitted:,} photons | {megabytes:.0f} MB"
-    )
+    engine.update_stats("", status_line(session.settings, statistics, progress, seconds))

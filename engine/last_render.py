@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .messages import Message
+from .summary import Summary
 
 
 @dataclass(frozen=True)
@@ -18,13 +19,22 @@ class LastRender:
 
     messages: tuple[Message, ...] = ()
     maps: tuple[str, ...] = ()  #: which photon maps were built and why others were not, a sentence each
+    summary: Summary | None = None  #: of a final render; None before the first
 
 
 _renders: dict[tuple[int, str], LastRender] = {}
+_count = 0
+
+
+def count() -> int:
+    """Return how often something was remembered, so that panels know when to be drawn again."""
+    return _count
 
 
 def remember(scene_uid: int, view_layer: str, render: LastRender) -> None:
     """Keep what is to be said of a render, in place of the one before."""
+    global _count
+    _count += 1
     _renders[scene_uid, view_layer] = render
 
 

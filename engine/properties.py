@@ -15,13 +15,16 @@ _DEFAULTS = RenderSettings()
 
 
 def quality(settings: PhotonMapsSceneSettings) -> int:
-    """Return the number of what the error target is called."""
+    """Return the number of what the error target is called: Custom, if that was chosen, or if it has no name."""
+    if settings.use_custom_error:
+        return Quality.CUSTOM
     error = settings.error_target
     return next((q for q, named in QUALITY_ERRORS.items() if math.isclose(named, error, rel_tol=1e-3)), Quality.CUSTOM)
 
 
 def set_quality(settings: PhotonMapsSceneSettings, number: int) -> None:
-    """Set the error target that a quality stands for; Custom leaves it as it is."""
+    """Set the error target that a quality stands for; Custom leaves it as it is, and stays chosen."""
+    settings.use_custom_error = number == Quality.CUSTOM
     settings.error_target = QUALITY_ERRORS.get(Quality(number), settings.error_target)
 
 
@@ -167,6 +170,11 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
         items=QUALITIES,
         get=quality,
         set=set_quality,
+    )
+    use_custom_error: BoolProperty(
+        name="Custom Error",
+        description="Quality is Custom even where the error is that of Draft, Normal or Final; it takes no time",
+        options={"HIDDEN"},
     )
     error_target: FloatProperty(
         name="Error",

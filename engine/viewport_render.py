@@ -7,6 +7,7 @@ import sys
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -96,8 +97,7 @@ class Viewport:
         if not equal(scene, self._scene):
             self._scene, self._reach = scene, reach_of(scene)
             uid, layer = depsgraph.scene.session_uid, depsgraph.view_layer.name
-            maps = last_render.recall(uid, layer).maps
-            last_render.remember(uid, layer, last_render.LastRender(tuple(messages), maps))
+            last_render.remember(uid, layer, replace(last_render.recall(uid, layer), messages=tuple(messages)))
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest picture, and have the view rendered as it now is."""

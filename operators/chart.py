@@ -89,6 +89,7 @@ class PHOTON_MAPS_OT_chart_speed_accuracy(bpy.types.Operator):
     seconds: FloatProperty(name="Time", description="How long it may take, in seconds", default=60.0, min=1.0)
 
     _timer: bpy.types.Timer | None = None
+    _told = ""  #: in the status bar
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -185,8 +186,11 @@ class PHOTON_MAPS_OT_chart_speed_accuracy(bpy.types.Operator):
 
     def _tell(self, context: bpy.types.Context) -> None:
         share, phase = _running.job.progress, _running.job.phase if _running.chart is None else "Figure"
-        context.window_manager.progress_update(100.0 * share)
-        context.workspace.status_text_set(f"Chart Speed vs Accuracy: {phase}, {share:.0%}  |  Esc: cancel")
+        text = f"Chart Speed vs Accuracy: {phase}, {share:.0%}  |  Esc: cancel"
+        if text != self._told:  # each has Blender draw its window again
+            context.window_manager.progress_update(100.0 * share)
+            context.workspace.status_text_set(text)
+            self._told = text
 
     def _end(self, context: bpy.types.Context) -> None:
         """Leave nothing running."""

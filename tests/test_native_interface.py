@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import gc
+import weakref
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -32,7 +34,8 @@ from photon_maps_native import (
     emitter,
     library,
 )
-from photon_maps_native.convert import to_camera, to_material
+from photon_maps_native.convert import floats, to_camera, to_image, to_material
+from photon_maps_native.structs import FloatPointer, PmImage
 
 from engine.passes import Pass
 from engine.settings import RenderSettings
@@ -292,6 +295,24 @@ def test_images_are_held_in_their_native_depth(dtype: type) -> None:
     held = Picture(data, RenderSettings()).run(1).render.statistics().memory_bytes
     beside = 4096  # the table that decodes bytes, and what describes the image
     assert image.pixels.nbytes <= held - without.render.statistics().memory_bytes <= image.pixels.nbytes + beside
+
+
+def test_structures_keep_their_arrays_and_let_them_go() -> None:
+    """Also a copy that was only made to be contiguous; and without a cycle, which would hold them back."""
+    gc.disable()
+    try:
+        pixels = np.arange(12, dtype=np.float32).reshape(2, 2, 3)[:, ::-1]
+        structure = (PmImage * 1)(to_image(Image(pixels)))
+        seen = np.ctypeslib.as_array(ctypes.cast(structure[0].pixels, FloatPointer), (12,)).copy()
+        assert (seen == pixels.ravel()).all()
+        picture = np.zeros(4, np.float32)
+        freed, pointer = weakref.ref(picture), floats(picture)
+        del picture
+        assert freed() is not None and pointer[0] == 0.0
+        del pointer
+        assert freed() is None
+    finally:
+        gc.enable()
 
 
 def test_a_missing_or_foreign_embree_is_one_sentence(tmp_path: Path) -> None:

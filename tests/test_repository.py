@@ -35,6 +35,7 @@ FLOORS = {
     "engine/search_disc": 1,
     "engine/viewport_rendering": 1,
     "engine/viewport_worker": 1,
+    "engine/status": 1,
     "engine/summary": 1,
     "engine/properties": 1,
     "engine/user_settings": 1,

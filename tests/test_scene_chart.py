@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+import threading
+import time
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -184,6 +186,26 @@ def test_a_cancelled_chart_stops():
     job.cancel()
     with pytest.raises(Cancelled):
         job.run()
+
+
+def test_a_pass_that_fails_leaves_no_timer_behind():
+    """A timer that stayed would cancel a later pass."""
+
+    class Failing:
+        cancelled = 0
+
+        def cancel(self):
+            Failing.cancelled += 1
+
+        def step(self):
+            raise MemoryError("no room")
+
+    job = ChartJob(Task("corner", corner(), RenderSettings(), 1.0))
+    with pytest.raises(MemoryError):
+        job._step(Failing(), time.monotonic() + 0.2)
+    assert not any(isinstance(thread, threading.Timer) for thread in threading.enumerate())
+    time.sleep(0.3)
+    assert Failing.cancelled == 0
 
 
 def test_a_black_picture_has_no_chart():

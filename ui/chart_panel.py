@@ -8,7 +8,7 @@ import bpy
 from ..engine import last_chart
 from ..engine.chart.outcome import TARGETS, Chart, choices
 from ..engine.chart.words import duration, percent
-from .panels import Panel, label
+from .panel import Panel, label
 
 
 class PHOTON_MAPS_PT_chart(Panel, bpy.types.Panel):

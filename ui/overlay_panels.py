@@ -8,7 +8,7 @@ import bpy
 from ..engine import last_photons, last_render
 from ..engine.received import light_figures, object_figures
 from ..engine.render_engine import PhotonMapsEngine
-from .panels import Panel, label
+from .panel import Panel, label
 
 
 def _settings(column: bpy.types.UILayout, context: bpy.types.Context) -> None:

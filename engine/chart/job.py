@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 import threading
 import time
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -205,19 +206,29 @@ class ChartJob:
                 raise Cancelled
             if remaining <= 0.0:
                 return False
-            timer = threading.Timer(remaining, session.cancel) if math.isfinite(remaining) else None
-            if timer is not None:
-                timer.start()
-            done = session.step()
-            if timer is not None:
-                timer.cancel()
-                timer.join()
+            with _called_after(remaining, session.cancel):
+                done = session.step()
         finally:
             with self._lock:
                 self._running = None
         if self._is_cancelled:
             raise Cancelled
         return done
+
+
+@contextmanager
+def _called_after(seconds: float, call: Callable[[], None]) -> Iterator[None]:
+    """Call a function after a time, unless what is done meanwhile has ended; at infinity never."""
+    if math.isinf(seconds):
+        yield
+        return
+    timer = threading.Timer(seconds, call)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
 
 
 def small_camera(camera: Camera) -> Camera:

@@ -69,7 +69,7 @@ class Kept:
             self._meshes[address] = kept
         self._met.add(address)
         for message in kept.said:
-            messages.add(message.object, message.text, message.advice)
+            messages.add(message.object, message.text, message.advice, message.node)
         return kept
 
     def image(

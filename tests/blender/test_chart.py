@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tests.blender.exr import read_exr
+from tests.blender.layouts import drawn
 from tests.blender.scenes import camera_above, link, quad, render
-from tests.blender.test_registration import drawn
 
 NAME = "Speed vs Accuracy"
 SECONDS = 12.0

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
+from tests.blender.layouts import drawn
 from tests.blender.scenes import render
 
 MANIFEST = tomllib.loads((Path(__file__).resolve().parents[2] / "blender_manifest.toml").read_text())
@@ -146,6 +147,11 @@ def test_qualities_are_error_targets(scene, extension):
     for quality, error in (("DRAFT", 0.05), ("NORMAL", 0.02), ("FINAL", 0.01)):
         settings.quality = quality
         assert settings.quality == quality and make(scene).error_target == pytest.approx(error)
+    # Custom stays chosen where its error happens to have a name, and leaves the error alone.
+    settings.quality = "CUSTOM"
+    assert settings.quality == "CUSTOM" and make(scene).error_target == pytest.approx(0.01)
+    settings.quality = "DRAFT"
+    assert settings.quality == "DRAFT"
     settings.error_target = 0.03
     assert settings.quality == "CUSTOM" and make(scene).error_target == pytest.approx(0.03)
 
@@ -158,42 +164,6 @@ def test_threads_and_stop_are_blenders(scene, extension):
     assert (made.threads, made.stop.name, made.time_limit) == (3, "TIME", 0.25)
     scene.render.threads_mode = "AUTO"
     assert make(scene).threads == 0
-
-
-class Layout:
-    """Stands for a layout and keeps what is drawn; background Blender draws no panels."""
-
-    def __init__(self):
-        self.texts, self.properties, self.operators = [], [], []
-
-    def column(self, **_):
-        return self
-
-    box = grid_flow = column
-
-    def label(self, text="", **_):
-        self.texts.append(text)
-
-    def prop(self, data, name, **_):
-        assert hasattr(data, name), name
-        self.properties.append(name)
-
-    def operator(self, name, text=""):
-        group, _, action = name.partition(".")
-        assert action in dir(getattr(bpy.ops, group)), name
-        self.operators.append(SimpleNamespace(name=name, text=text))
-        return self.operators[-1]
-
-    def template_node_view(self, *_):
-        self.texts.append("nodes")
-
-
-def drawn(extension, name, context=None, module="panels"):
-    """Draw a panel in the context of the open scene, or in a given one."""
-    panel = type("Panel", (getattr(getattr(extension.ui, module), name),), {"layout": None})
-    panel = object.__new__(type("Drawn", (), {"layout": Layout(), "column": panel.column, "draw": panel.draw}))
-    panel.draw(context or bpy.context)
-    return panel.layout
 
 
 def test_a_missing_helper_is_said_in_the_panel(scene, extension, monkeypatch):
@@ -233,8 +203,10 @@ def test_panels_of_cameras_objects_and_worlds(scene, extension):
     place = SimpleNamespace(
         camera=camera, object=bpy.data.objects.new("Camera", camera), world=bpy.data.worlds.new("World")
     )
-    assert {"panorama_type", "longitude_max"} <= set(drawn(extension, "PHOTON_MAPS_PT_panorama", place).properties)
+    assert {"panorama_type", "longitude_max"} <= set(
+        drawn(extension, "PHOTON_MAPS_PT_panorama", place, "data_panels").properties
+    )
     rays = ["camera", "diffuse", "glossy", "transmission"]
-    shown = drawn(extension, "PHOTON_MAPS_PT_ray_visibility", place).properties
+    shown = drawn(extension, "PHOTON_MAPS_PT_ray_visibility", place, "data_panels").properties
     assert shown == [f"visible_{ray}" for ray in (*rays, "shadow")]
-    assert drawn(extension, "PHOTON_MAPS_PT_world_visibility", place).properties == rays
+    assert drawn(extension, "PHOTON_MAPS_PT_world_visibility", place, "data_panels").properties == rays

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.gui.archive import archive_for
+
 HERE = Path(__file__).resolve().parent
 BUILD = HERE.parents[1] / "build"
 DIST = HERE.parents[1] / "dist"
@@ -38,17 +40,17 @@ class Blender:
 
     home: Path
 
-    def call(self, *command: str) -> subprocess.CompletedProcess[str]:
-        """Run a command there."""
+    def call(self, *command: str, seconds: int = SECONDS) -> subprocess.CompletedProcess[str]:
+        """Run a command there; end it after a time."""
         return subprocess.run(
-            ["bash", HERE / "run.sh", ROOT, f"/{self.home.relative_to(ROOT)}", "timeout", str(SECONDS), *command],
+            ["bash", HERE / "run.sh", ROOT, f"/{self.home.relative_to(ROOT)}", "timeout", str(seconds), *command],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            timeout=SECONDS + 60,
+            timeout=seconds + 60,
         )
 
-    def run(self, script: str) -> dict:
+    def run(self, script: str, seconds: int = SECONDS) -> dict:
         """Run a script of this folder in the window; its screenshots go to build/gui.
 
         :return: what it left in driver.results.
@@ -58,7 +60,7 @@ class Blender:
         for path in HERE.glob("*.py"):
             shutil.copy(path, self.home)
         window = ("--window-geometry", "0", "0", "1280", "800", "--gpu-backend", "opengl")
-        ran = self.call("blender", *window, "--python-exit-code", "4", "--python", script)
+        ran = self.call("blender", *window, "--python-exit-code", "4", "--python", script, seconds=seconds)
         pictures = BUILD / "gui"
         pictures.mkdir(parents=True, exist_ok=True)
         for path in self.home.glob("*.png"):
@@ -74,7 +76,8 @@ def blender() -> Iterator[Blender]:
     assert (ROOT / ".ready").exists(), "run `make test-gui`"
     (archive,) = DIST.glob("photon_maps-*-linux-x64.zip")
     home = Path(tempfile.mkdtemp(prefix="home-", dir=ROOT / "tmp"))
-    shutil.copy(archive, home)
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(archive_for(ROOT, archive, Path(folder)), home)
     made = Blender(home)
     install = ("extension", "install-file", "--repo", "user_default", "--enable", archive.name)
     installed = made.call("blender", "--command", *install)

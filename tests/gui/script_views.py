@@ -130,6 +130,7 @@ def views(scene: bpy.types.Scene) -> driver.Steps:
 
 def colours(scene: bpy.types.Scene) -> driver.Steps:
     """A world of one colour through each view transform: on the screen, and in the file of a final render."""
+    bpy.data.objects.remove(bpy.data.objects["Box"])
     scene.render.film_transparent = False
     scene.world = bpy.data.worlds.new("World")
     scene.world.use_nodes = True

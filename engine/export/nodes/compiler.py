@@ -187,7 +187,7 @@ class Compiler:
         """Add a message about a node of the owner."""
         name = node.label or node.name
         kind = "" if node.bl_label in name else f" ({node.bl_label})"
-        self.messages.add(self.owner, f'node "{name}"{kind} {text}', advice)
+        self.messages.add(self.owner, text, advice, node=f'"{name}"{kind}')
 
     # --- Closures ---
 

@@ -18,22 +18,24 @@ from .scene_data import Attribute, Camera, Domain, Image, Instances, Light, Mate
 PIXEL_TYPES = {np.dtype(np.uint8): 0, np.dtype(np.float16): 1, np.dtype(np.float32): 2}
 
 
-class Address(ctypes.c_void_p):
-    """Where an array is, and the array: a cast keeps what it was made from, and a structure what it is given."""
-
-    def __init__(self, array: np.ndarray) -> None:
-        super().__init__(array.ctypes.data)
-        self.array = array
-
-
 def floats(array: np.ndarray) -> Any:
     """Return a pointer to a contiguous float32 array, which it keeps alive."""
-    return ctypes.cast(Address(array), structs.FloatPointer)
+    return structs.FloatPointer(_first(array, ctypes.c_float))
 
 
 def uints(array: np.ndarray) -> Any:
     """Return a pointer to a contiguous uint32 array, which it keeps alive."""
-    return ctypes.cast(Address(array), structs.UintPointer)
+    return structs.UintPointer(_first(array, ctypes.c_uint32))
+
+
+def _first(array: np.ndarray, kind: type) -> Any:
+    """Return an array's first element where it lies, with the array: a pointer keeps that, and a structure with it.
+
+    Not by ctypes.cast(), whose result refers to itself, so that arrays of many megabytes would wait for the collector.
+    """
+    element = kind.from_address(array.ctypes.data)
+    element.array = array
+    return element
 
 
 def shaped(array: np.ndarray, dtype: type, shape: tuple[int | None, ...], name: str) -> np.ndarray:
@@ -140,7 +142,7 @@ def to_image(image: Image) -> structs.PmImage:
         width=width,
         height=height,
         channels=channels,
-        pixels=Address(pixels),
+        pixels=structs.BytePointer(_first(pixels, ctypes.c_uint8)),
         decode=decode,
     )
 

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_double, c_float, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_double, c_float, c_uint8, c_uint32, c_uint64
 
 FloatPointer = POINTER(c_float)
 UintPointer = POINTER(c_uint32)
+BytePointer = POINTER(c_uint8)  #: to what the C structure leaves open
 
 
 class SizedStructure(ctypes.Structure):
@@ -87,7 +88,7 @@ class PmImage(SizedStructure):
         ("height", c_uint32),
         ("channels", c_uint32),
         ("reserved", c_uint32),
-        ("pixels", c_void_p),
+        ("pixels", BytePointer),
         ("decode", FloatPointer),
     ]
 

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Two hundred random actions in the window: no crash, no traceback, no thread that stays, memory that stays flat."""
+
+from __future__ import annotations
+
+from tests.gui.conftest import FIGURES, Blender
+
+MEGABYTE = 2**20
+
+
+def test_two_hundred_random_actions(blender: Blender) -> None:
+    results = blender.run("script_random.py", seconds=1200)  # which looks for crashes and tracebacks
+    memory = [bytes_ / MEGABYTE for bytes_ in results["memory"]]
+    FIGURES.append(f"random actions: memory in between {', '.join(f'{size:.0f}' for size in memory)} MB")
+    FIGURES.append(f"random actions: {results['counts']}, refused: {len(results.get('refused', []))}")
+    assert sum(results["counts"].values()) == 200 and results["threads"] == 0
+    # The first has not yet loaded all that Blender loads once; undo keeps its steps.
+    assert memory[-1] - memory[1] < 100
