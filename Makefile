@@ -2,8 +2,12 @@
 # Needs Python 3.11 with venv, GCC, CMake and make; the rest is fetched once and kept under .venv and wheels.
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
-ZIP := dist/photon_maps-$(VERSION)-linux-x64.zip
+# For Linux as the machine's own compiler builds it, which is quick; `make package` builds what users get.
+ZIP := build/photon_maps-$(VERSION)-linux-x64.zip
+PLATFORMS := linux-x64 windows-x64 macos-arm64 macos-x64
+PACKAGES := $(PLATFORMS:%=dist/photon_maps-$(VERSION)-%.zip)
 PYTHON := .venv/bin/python
+ZIG := $(CURDIR)/.venv/lib/python3.11/site-packages/ziglang/zig
 PIP := $(PYTHON) -m pip --quiet --disable-pip-version-check
 JOBS := $(shell nproc)
 # The Embree that the wheel brings; a pattern, for the name carries a checksum.
@@ -11,13 +15,28 @@ EMBREE := $(CURDIR)/build/native/embreex.libs/libembree4-*.so.4
 
 NATIVE_WHEEL := wheels/photon_maps_native-$(VERSION)-py3-none-manylinux_2_34_x86_64.whl
 EMBREEX := wheels/embreex-4.4.0.post1
-EMBREEX_TAGS := manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl
-EMBREEX_WHEELS := $(EMBREEX)-cp311-cp311-$(EMBREEX_TAGS) $(EMBREEX)-cp313-cp313-$(EMBREEX_TAGS)
+
+# What each package is built for, and how its wheels are called: the native one, and Embree's as published.
+TARGET_linux-x64 := x86_64-linux-gnu.2.28
+TARGET_windows-x64 := x86_64-windows-gnu
+TARGET_macos-arm64 := aarch64-macos.11.0
+TARGET_macos-x64 := x86_64-macos.11.0
+TAG_linux-x64 := manylinux_2_28_x86_64
+TAG_windows-x64 := win_amd64
+TAG_macos-arm64 := macosx_11_0_arm64
+TAG_macos-x64 := macosx_11_0_x86_64
+EMBREEX_TAG_linux-x64 := manylinux_2_27_x86_64.manylinux_2_28_x86_64
+EMBREEX_TAG_windows-x64 := win_amd64
+EMBREEX_TAG_macos-arm64 := macosx_13_0_arm64
+EMBREEX_TAG_macos-x64 := macosx_13_0_x86_64
+native_wheel = wheels/photon_maps_native-$(VERSION)-py3-none-$(TAG_$(1)).whl
+embreex_wheels = $(foreach python,cp311 cp313,$(EMBREEX)-$(python)-$(python)-$(EMBREEX_TAG_$(1)).whl)
+EMBREEX_WHEELS := $(call embreex_wheels,linux-x64)
 
 # Folders are among the sources, so that a file that went away counts as a change.
 NATIVE_SOURCES := $(shell find engine/native -not -path 'engine/native/tests*' -not -path '*/__pycache__*')
 EXTENSION_SOURCES := blender_manifest.toml LICENSE __init__.py \
-    $(shell find engine operators ui \( -type d -o -name '*.py' \) -not -path 'engine/native*' -not -path '*/__pycache__*')
+    $(shell find licenses engine operators ui \( -type d -o -name '*.py' -o -name '*.txt' \) -not -path 'engine/native*' -not -path '*/__pycache__*')
 PYTHON_FOLDERS := __init__.py engine operators ui tests tools benchmarks
 CXX_SOURCES = $(shell find engine/native benchmarks -name '*.cpp' -o -name '*.h' -o -name '*.c')
 
@@ -34,7 +53,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help demo beside seed chart prediction calibration sweep package test test-native test-python test-gui \
-    test-campaign lint format bench clean
+    test-versions test-wine test-campaign lint format bench clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -42,6 +61,8 @@ help:
 	@echo 'make test      style, C++ checks (also under sanitizers), Python and Blender tests'
 	@echo 'make test-gui  the rendered viewport in the window of a real Blender, 1.3 GB in build the first time; needs root'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
+	@echo 'make test-versions   the package in every Blender from 4.2 to 5.2 that is a Python module, 1.4 GB the first time'
+	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
 	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
@@ -50,7 +71,7 @@ help:
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
 	@echo 'make sweep     Automatic beside the best of many settings by hand: [SWEEP="--scenes gap"]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
-	@echo 'make package   the extension for Blender: $(ZIP)'
+	@echo 'make package   the extension for Blender on Linux, Windows and macOS, in dist'
 	@echo 'make format    bring all sources into the project style'
 	@echo 'make clean     remove build, dist and wheels; .venv stays'
 
@@ -65,6 +86,10 @@ help:
 
 .venv/test.stamp: requirements/test.txt .venv/build.stamp
 	$(PIP) install -r requirements/test.txt
+	@touch $@
+
+.venv/package.stamp: requirements/package.txt .venv/build.stamp
+	$(PIP) install -r requirements/package.txt
 	@touch $@
 
 .venv/seed.stamp: requirements/seed.txt .venv/build.stamp
@@ -94,12 +119,28 @@ $(NATIVE_WHEEL): $(NATIVE_SOURCES) .venv/build.stamp
 	    -C build-dir=$(CURDIR)/build/cmake/release -w wheels ./engine/native
 	@touch $@
 
-$(EMBREEX_WHEELS) &: requirements/bundled.txt | .venv/build.stamp
+# How each platform gets its wheels, and the package of them.
+define platform_rules
+$(call embreex_wheels,$(1)) &: requirements/bundled.txt | .venv/build.stamp
 	@for version in 3.11 3.13; do \
-	    $(PIP) download --no-deps --require-hashes --only-binary :all: --python-version $$version \
-	        --platform manylinux_2_28_x86_64 --dest wheels -r requirements/bundled.txt || exit 1; \
+	    $(PIP) download --no-deps --require-hashes --only-binary :all: --python-version $$$$version \
+	        --platform $(lastword $(subst ., ,$(EMBREEX_TAG_$(1)))) --dest wheels -r requirements/bundled.txt || exit 1; \
 	done
-	@touch $(EMBREEX_WHEELS)
+	@touch $(call embreex_wheels,$(1))
+
+$(call native_wheel,$(1)): $(NATIVE_SOURCES) .venv/package.stamp
+	@mkdir -p build wheels
+	$(PIP) wheel --no-build-isolation --no-deps --no-index \
+	    -C build-dir=$(CURDIR)/build/cmake/$(1) -C wheel.tags=py3-none-$(TAG_$(1)) \
+	    -C cmake.define.CMAKE_TOOLCHAIN_FILE=$(CURDIR)/engine/native/zig.cmake \
+	    -C cmake.define.ZIG_COMPILER=$(ZIG) -C cmake.define.ZIG_TARGET=$(TARGET_$(1)) -w wheels ./engine/native
+	@touch $$@
+
+dist/photon_maps-$(VERSION)-$(1).zip: $(call native_wheel,$(1)) $(call embreex_wheels,$(1)) $(EXTENSION_SOURCES) \
+    tools/package.py | .venv/build.stamp
+	$(PYTHON) tools/package.py --platform $(1) --output $$@
+endef
+$(foreach platform,$(PLATFORMS),$(eval $(call platform_rules,$(platform))))
 
 # What the wheels hold, for tests without Blender: beside .venv, so that Blender finds what it installed itself.
 build/native/stamp: $(NATIVE_WHEEL) $(firstword $(EMBREEX_WHEELS))
@@ -110,11 +151,11 @@ build/native/stamp: $(NATIVE_WHEEL) $(firstword $(EMBREEX_WHEELS))
 
 # --- The extension ---
 
-package: $(ZIP)
-	@echo 'Install it in Blender by Edit > Preferences > Get Extensions > Install from Disk: $(ZIP)'
+package: $(PACKAGES)
+	@echo 'Install one in Blender by Edit > Preferences > Get Extensions > Install from Disk.'
 
-$(ZIP): $(EXTENSION_SOURCES) $(NATIVE_WHEEL) $(EMBREEX_WHEELS) tools/package.py | .venv/build.stamp
-	$(PYTHON) tools/package.py --output $@
+$(ZIP): $(NATIVE_WHEEL) $(EMBREEX_WHEELS) $(EXTENSION_SOURCES) tools/package.py | .venv/build.stamp
+	$(PYTHON) tools/package.py --platform linux-x64 --native $(NATIVE_WHEEL) --output $@
 
 demo: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/render.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --frame "$$FRAME" --size "$$SIZE"
@@ -171,7 +212,7 @@ test-native: build/native/stamp
 	    ctest --test-dir build/cmake/$$kind --parallel $(JOBS) --output-on-failure --no-tests=error || exit 1; \
 	done
 
-WITHOUT_BLENDER := --ignore=tests/blender --ignore=tests/gui
+WITHOUT_BLENDER := --ignore=tests/blender --ignore=tests/gui --ignore=tests/versions --ignore=tests/platforms
 
 test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	@# Side by side: those in Blender use one core most of the time. There without build/native: the wheels are the zip's.
@@ -182,10 +223,49 @@ test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	wait $$blender; in_blender=$$?; cat build/tests_blender.log; exit $$((native + in_blender))
 
 # BLENDER_ROOT: a folder that holds another Blender, made by `bash tests/gui/blender.sh FOLDER sid`.
-test-gui: .venv/test.stamp $(ZIP)
+test-gui: .venv/test.stamp dist/photon_maps-$(VERSION)-linux-x64.zip
 	@mkdir -p build
 	bash tests/gui/blender.sh "$${BLENDER_ROOT:-build/blender-trixie}"
 	timeout 3000 $(PYTHON) -m pytest tests/gui -o pythonpath=.
+
+# One environment for each Blender that is a Python module. BLENDER_ROOT: an application besides, as for test-gui.
+VERSIONS := 4.2.23 4.5.15 5.0.1 5.2.3
+PYTHON_OF_4.2.23 := 3.11
+PYTHON_OF_4.5.15 := 3.11
+PYTHON_OF_5.0.1 := 3.11
+PYTHON_OF_5.2.3 := 3.13
+
+build/versions/%/stamp: requirements/blender_%.txt tools/find_python.sh
+	rm -rf $(@D)
+	"$$(bash tools/find_python.sh $(PYTHON_OF_$*))" -m venv $(@D)
+	$(@D)/bin/python -m pip --quiet --disable-pip-version-check install -r $<
+	@touch $@
+
+test-versions: .venv/test.stamp .venv/system.stamp dist/photon_maps-$(VERSION)-linux-x64.zip \
+    $(VERSIONS:%=build/versions/%/stamp)
+	$(PYTHON) -m pytest tests/versions -o pythonpath=.
+
+# The program that repeats recorded calls, for the oldest processors of each platform.
+REPLAY_SOURCES := engine/native/replay/replay.cpp engine/native/src/dynamic_library.cpp
+build/replay/replay: TARGET := $(TARGET_linux-x64)
+build/replay/replay.exe: TARGET := $(TARGET_windows-x64) -mcpu=x86_64_v2 -s  # as its library: built from the same parts
+build/replay/replay build/replay/replay.exe: $(REPLAY_SOURCES) engine/native/src/dynamic_library.h .venv/package.stamp
+	@mkdir -p $(@D)
+	$(ZIG) c++ -target $(TARGET) -std=c++20 -O3 -Iengine/native/src $(REPLAY_SOURCES) -o $@
+
+# The checks of what is vectorized.
+VECTORIZED := test_photon_map test_filter test_estimate test_nested_estimate
+
+# Wine stands for Windows, qemu for processors without AVX2.
+test-wine: .venv/test.stamp build/native/stamp build/replay/replay build/replay/replay.exe $(PACKAGES)
+	@[ -x /usr/lib/wine/wine64 ] && command -v qemu-x86_64 >/dev/null || bash tools/apt_install.sh wine64 qemu-user
+	timeout 1800 $(PYTHON) -m pytest tests/platforms
+	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
+	cmake --build build/cmake/release --target $(VECTORIZED)
+	@for check in $(VECTORIZED); do \
+	    echo "$$check without AVX2"; \
+	    PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) qemu-x86_64 -cpu Nehalem build/cmake/release/$$check || exit 1; \
+	done
 
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m campaign

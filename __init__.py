@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon Maps: a render engine for Blender that follows light as photons."""
 
+import sys
+
 from .engine import overlay_properties, properties, render_engine
 from .operators import chart, denoising, messages, presets, search_disc
 from .ui import (
@@ -13,6 +15,11 @@ from .ui import (
     photon_overlay,
     refresh,
 )
+
+# Blender forgets the modules of an extension that it updates, but not those of the wheels: an older helper would stay.
+# None of the modules above imports it.
+for name in [name for name in sys.modules if name.partition(".")[0] == "photon_maps_native"]:
+    del sys.modules[name]
 
 #: In the order of registration; each has register() and unregister().
 MODULES = (
@@ -32,3 +39,6 @@ def unregister() -> None:
     """Leave nothing behind."""
     for module in reversed(MODULES):
         module.unregister()
+    library = sys.modules.get("photon_maps_native.library")
+    if library is not None:
+        library.unload_library()

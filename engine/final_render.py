@@ -32,25 +32,33 @@ SHOW_SECONDS = 0.5  #: between two pictures on the way
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render the depsgraph's view layer; what fails is reported, never a silent black picture."""
+    messages, maps, summary = Messages(), (), None
+
+    def fail(sentence: str) -> None:
+        messages.add(depsgraph.scene.name, sentence)
+        _fail(engine, sentence)
+
     try:
         # Not at the top: without the helper the add-on still registers, and says what is missing.
         from photon_maps_native import NativeError
     except ImportError as error:
-        _fail(engine, f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
+        fail(f"The native helper cannot be loaded ({error}). Install the extension again from its zip.")
+        last_render.remember(
+            depsgraph.scene.session_uid, depsgraph.view_layer.name, last_render.LastRender(tuple(messages))
+        )
         return
     from . import capture
 
     if capture.is_wanted():
         capture.take(engine, depsgraph)
         return
-    messages, maps, summary = Messages(), (), None
     try:
         maps, summary = _render_layer(engine, depsgraph, messages)
     except NativeError as error:
-        _fail(engine, f"The render stopped: {error}")
+        fail(f"The render stopped: {error}")
     except Exception as error:
         # Blender goes on after an exception as if the black picture were the render; say it in the window, too.
-        _fail(engine, f"The render stopped: {type(error).__name__}: {error}")
+        fail(f"The render stopped: {type(error).__name__}: {error}")
         raise
     finally:
         said = last_render.LastRender(tuple(messages), maps, summary)

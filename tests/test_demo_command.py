@@ -143,7 +143,7 @@ def png_size(path: Path) -> tuple[int, int]:
 
 
 def test_the_packaged_extension_renders_the_demo_scene(tmp_path):
-    (zip_file,) = (ROOT / "dist").glob("photon_maps-*-linux-x64.zip")
+    (zip_file,) = (ROOT / "build").glob("photon_maps-*-linux-x64.zip")
     result = run(zip_file, folder=tmp_path, size="10%")
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "build" / "demo.blend").is_file()

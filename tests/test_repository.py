@@ -149,12 +149,13 @@ def test_only_the_library_binding_knows_ctypes():
 def test_the_version_is_the_same_wherever_it_must_be_said():
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
     native = tomllib.loads((ROOT / "engine/native/pyproject.toml").read_text())
-    (wheel,) = [name for name in manifest["wheels"] if "photon_maps_native-" in name]
-    (tag,) = native["tool"]["scikit-build"]["overrides"][0]["wheel"]["tags"]
+    wheels = {name for name in manifest["wheels"] if "photon_maps_native-" in name}
+    tags = dict(re.findall(r"^TAG_(\S+) := (\S+)$", (ROOT / "Makefile").read_text(), re.MULTILINE))
     from engine.summary import VERSION
 
     assert {native["project"]["version"], VERSION} == {manifest["version"]}
-    assert wheel == f"./wheels/photon_maps_native-{manifest['version']}-{tag}.whl"
+    assert list(tags) == manifest["platforms"]
+    assert wheels == {f"./wheels/photon_maps_native-{manifest['version']}-py3-none-{tag}.whl" for tag in tags.values()}
 
 
 @pytest.mark.parametrize("kind", ["machine paths", "registry addresses", "marks"])

@@ -29,8 +29,8 @@ MODULE = "bl_ext.user_default.photon_maps"
 
 def install() -> None:
     """Install and enable the extension from its zip."""
-    zips = sorted((ROOT / "dist").glob("photon_maps-*-linux-x64.zip"))
-    assert zips, "run `make package` first"
+    zips = sorted((ROOT / "build").glob("photon_maps-*-linux-x64.zip"))
+    assert zips, "run `make test` or `make demo` first, which build it"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)  # the installer of Blender 4.2 leaves a pipe open
         bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(zips[-1]), enable_on_install=True)

@@ -125,6 +125,20 @@ def test_a_missing_helper_is_reported(corner, monkeypatch):
         bpy.ops.render.render()
 
 
+def test_a_wrong_embree_is_said_in_the_panel_and_blender_goes_on(corner, extension, monkeypatch, tmp_path):
+    from photon_maps_native import library
+
+    wrong = tmp_path / "libembree4.so.4"
+    wrong.write_text("This is no library.")
+    with monkeypatch.context() as patch:
+        patch.setattr(library, "embree_path", lambda: wrong)
+        with pytest.raises(RuntimeError, match="Embree cannot be loaded"):
+            bpy.ops.render.render()
+    (said,) = extension.engine.last_render.recall(corner.session_uid, bpy.context.view_layer.name).messages
+    assert said.object == corner.name and str(wrong) in said.text
+    assert render(corner)["Combined"][..., :3].mean() > 0.01
+
+
 def test_no_camera_is_said(scene):
     with pytest.raises(RuntimeError, match="no camera"):
         bpy.ops.render.render()

@@ -13,6 +13,7 @@ from ctypes import POINTER, byref, c_char_p, c_uint32, c_uint64, c_void_p
 from functools import cache
 from pathlib import Path
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 
@@ -79,6 +80,20 @@ def load_library() -> ctypes.CDLL:
             f"The compiled helper has interface {version}, but {ABI_VERSION} is needed: reinstall the extension.",
         )
     return library
+
+
+def unload_library() -> None:
+    """Free the helper, so that Windows lets its file be removed or replaced; the next call loads it again.
+
+    Does nothing while a handle is open. Embree stays: its threads may sleep in its code.
+    """
+    if sys.platform != "win32" or not load_library.cache_info().currsize or any(handle.is_open for handle in HANDLES):
+        return
+    library = load_library()
+    load_library.cache_clear()
+    free = ctypes.windll.kernel32.FreeLibrary
+    free.argtypes = [c_void_p]
+    free(library._handle)
 
 
 def declare(library: ctypes.CDLL) -> None:
@@ -149,6 +164,10 @@ def call(name: str, *arguments: Any) -> None:
         raise NativeError(status, library.pm_last_error().decode("utf-8", "replace"))
 
 
+#: All that there are.
+HANDLES: WeakSet[Handle] = WeakSet()
+
+
 class Handle:
     """An opaque handle of the helper, released once."""
 
@@ -156,6 +175,12 @@ class Handle:
 
     def __init__(self) -> None:
         self._handle = c_void_p()
+        HANDLES.add(self)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has not been released."""
+        return bool(self._handle)
 
     @property
     def handle(self) -> c_void_p:

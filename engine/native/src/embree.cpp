@@ -1,55 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "embree.h"
 
-#include <dlfcn.h>
-
 #include <array>
 #include <new>
 
 #include "parallel.h"
+#include "processor.h"
 
 namespace photon_maps {
 
 namespace {
 
-// Blender's executable puts its own Embree and TBB into the global scope; without RTLD_DEEPBIND the library would
-// bind to them. The address sanitizer's runtime refuses that flag, and runs in no process with a second Embree.
-// RTLD_NODELETE: TBB's threads sleep in the library's code after the last device is gone.
-#if defined(RTLD_DEEPBIND) && !defined(__SANITIZE_ADDRESS__)
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | RTLD_DEEPBIND;
-#else
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;
-#endif
-
-template <class Function>
-void resolve(void *library, const char *name, Function *&function) {
-    function = reinterpret_cast<Function *>(dlsym(library, name));
-    if (!function) throw EmbreeError(std::string("the Embree library has no function ") + name);
+rtc::Functions resolve_functions(const DynamicLibrary &library) {
+    rtc::Functions f{};
+    library.resolve("rtcNewDevice", f.rtcNewDevice);
+    library.resolve("rtcReleaseDevice", f.rtcReleaseDevice);
+    library.resolve("rtcGetDeviceProperty", f.rtcGetDeviceProperty);
+    library.resolve("rtcGetDeviceError", f.rtcGetDeviceError);
+    library.resolve("rtcNewScene", f.rtcNewScene);
+    library.resolve("rtcReleaseScene", f.rtcReleaseScene);
+    library.resolve("rtcSetSceneFlags", f.rtcSetSceneFlags);
+    library.resolve("rtcSetSceneBuildQuality", f.rtcSetSceneBuildQuality);
+    library.resolve("rtcSetSceneProgressMonitorFunction", f.rtcSetSceneProgressMonitorFunction);
+    library.resolve("rtcCommitScene", f.rtcCommitScene);
+    library.resolve("rtcNewGeometry", f.rtcNewGeometry);
+    library.resolve("rtcReleaseGeometry", f.rtcReleaseGeometry);
+    library.resolve("rtcCommitGeometry", f.rtcCommitGeometry);
+    library.resolve("rtcAttachGeometryByID", f.rtcAttachGeometryByID);
+    library.resolve("rtcSetSharedGeometryBuffer", f.rtcSetSharedGeometryBuffer);
+    library.resolve("rtcSetGeometryInstancedScene", f.rtcSetGeometryInstancedScene);
+    library.resolve("rtcSetGeometryMask", f.rtcSetGeometryMask);
+    library.resolve("rtcSetGeometryTransform", f.rtcSetGeometryTransform);
+    library.resolve("rtcIntersect1", f.rtcIntersect1);
+    library.resolve("rtcOccluded1", f.rtcOccluded1);
+    return f;
 }
 
-rtc::Functions resolve_functions(void *library) {
-    rtc::Functions f{};
-    resolve(library, "rtcNewDevice", f.rtcNewDevice);
-    resolve(library, "rtcReleaseDevice", f.rtcReleaseDevice);
-    resolve(library, "rtcGetDeviceProperty", f.rtcGetDeviceProperty);
-    resolve(library, "rtcGetDeviceError", f.rtcGetDeviceError);
-    resolve(library, "rtcNewScene", f.rtcNewScene);
-    resolve(library, "rtcReleaseScene", f.rtcReleaseScene);
-    resolve(library, "rtcSetSceneFlags", f.rtcSetSceneFlags);
-    resolve(library, "rtcSetSceneBuildQuality", f.rtcSetSceneBuildQuality);
-    resolve(library, "rtcSetSceneProgressMonitorFunction", f.rtcSetSceneProgressMonitorFunction);
-    resolve(library, "rtcCommitScene", f.rtcCommitScene);
-    resolve(library, "rtcNewGeometry", f.rtcNewGeometry);
-    resolve(library, "rtcReleaseGeometry", f.rtcReleaseGeometry);
-    resolve(library, "rtcCommitGeometry", f.rtcCommitGeometry);
-    resolve(library, "rtcAttachGeometryByID", f.rtcAttachGeometryByID);
-    resolve(library, "rtcSetSharedGeometryBuffer", f.rtcSetSharedGeometryBuffer);
-    resolve(library, "rtcSetGeometryInstancedScene", f.rtcSetGeometryInstancedScene);
-    resolve(library, "rtcSetGeometryMask", f.rtcSetGeometryMask);
-    resolve(library, "rtcSetGeometryTransform", f.rtcSetGeometryTransform);
-    resolve(library, "rtcIntersect1", f.rtcIntersect1);
-    resolve(library, "rtcOccluded1", f.rtcOccluded1);
-    return f;
+/// @throws EmbreeError where the processor lacks what this library was compiled for
+void check_processor() {
+#if defined(__x86_64__)
+    if (!has_baseline) throw EmbreeError("this processor lacks SSE4.2, which Photon Maps needs");
+#endif
 }
 
 constexpr int property_version = 0;  // RTC_DEVICE_PROPERTY_VERSION
@@ -57,14 +48,14 @@ constexpr int error_out_of_memory = 4, error_cancelled = 6;
 
 }  // namespace
 
-void Embree::LibraryCloser::operator()(void *library) const { dlclose(library); }
-
-Embree::Embree(const std::string &path) : library_(dlopen(path.c_str(), load_flags)) {
-    if (!library_) {
-        const char *reason = dlerror();
-        throw EmbreeError("Embree cannot be loaded: " + std::string(reason ? reason : path.c_str()));
+Embree::Embree(const std::string &path) {
+    check_processor();
+    try {
+        library_.emplace(path);
+        functions_ = resolve_functions(*library_);
+    } catch (const LibraryError &error) {
+        throw EmbreeError("Embree cannot be loaded (" + path + "): " + error.what());
     }
-    functions_ = resolve_functions(library_.get());
     device_ = functions_.rtcNewDevice(nullptr);
     if (!device_) throw EmbreeError("Embree cannot be started on this processor");
     version_ = static_cast<uint32_t>(functions_.rtcGetDeviceProperty(device_, property_version));

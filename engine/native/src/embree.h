@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include "dynamic_library.h"
 
 namespace photon_maps {
 
@@ -94,10 +96,7 @@ class Embree {
     void check(const char *what) const;
 
   private:
-    struct LibraryCloser {
-        void operator()(void *library) const;
-    };
-    std::unique_ptr<void, LibraryCloser> library_;
+    std::optional<DynamicLibrary> library_;
     rtc::Functions functions_{};
     rtc::Device device_ = nullptr;
     uint32_t version_ = 0;

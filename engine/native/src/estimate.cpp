@@ -63,7 +63,7 @@ class Gather {
     }
 
     /// One photon at a time, through the closures.
-    void add_scattered(size_t i, Int8 mask, Float8 weight) {
+    [[gnu::always_inline]] void add_scattered(size_t i, Int8 mask, Float8 weight) {
         for (size_t lane = 0; lane < lanes; ++lane) {
             if (!mask[lane]) continue;
             const Vec3 share = scattered_share(query_, -unpack_direction(photons_.direction[i + lane])) * weight[lane];

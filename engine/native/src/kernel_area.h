@@ -22,7 +22,7 @@ struct Barrier {
 
     /// Returns whether the barrier lies between the centre and (u, v); T is a number or a vector of them.
     template <typename T>
-    auto hides(T u, T v) const {
+    [[gnu::always_inline]] auto hides(T u, T v) const {
         return ((ax * v - ay * u) >= 0) & ((u * by - v * bx) >= 0) &
                (((bx - ax) * (v - ay) - (by - ay) * (u - ax)) < 0);
     }

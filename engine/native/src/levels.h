@@ -11,7 +11,7 @@ namespace photon_maps {
 constexpr size_t level_count = lanes;
 
 /// Returns the squares of the radii over that of the largest.
-inline Float8 level_areas() {
+[[gnu::always_inline]] inline Float8 level_areas() {
     return Float8{1.0f / 128, 1.0f / 64, 1.0f / 32, 1.0f / 16, 1.0f / 8, 1.0f / 4, 1.0f / 2, 1};
 }
 

@@ -22,7 +22,7 @@ SceneSphere sphere_of(const Scene &scene) { return {scene.bounds().center(), sce
 }  // namespace
 
 Lights::Lights(const Scene &scene, std::vector<Lamp> lamps, const World &world)
-    : scene_(scene), lamps_(std::move(lamps)), triangles_(scene), world_(scene, world) {
+    : lamps_(std::move(lamps)), triangles_(scene), world_(scene, world) {
     const SceneSphere sphere = sphere_of(scene);
     for (const Lamp &lamp : lamps_) power_.push_back(lamp.visibility & lit_kinds ? emitted_power(lamp, sphere) : 0.0f);
     power_.push_back(triangles_.power());

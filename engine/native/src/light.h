@@ -100,7 +100,6 @@ class Lights {
     std::optional<LightSample> sample_world(Vec3 normal, bool both_sides, const RayState &receiver,
                                             const std::array<float, 3> &u) const;
 
-    const Scene &scene_;
     std::vector<Lamp> lamps_;
     EmissiveTriangles triangles_;
     WorldLight world_;

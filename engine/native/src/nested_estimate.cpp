@@ -25,7 +25,7 @@ class LevelGather {
     }
 
     const Levels &sum() const { return sum_; }
-    Float8 weight() const { return weight_; }
+    const Float8 &weight() const { return weight_; }
 
   private:
     /// Puts eight photons to the tests of the largest radius, then adds those that passed one by one.

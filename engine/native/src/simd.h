@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "processor.h"
+
 namespace photon_maps {
 
 constexpr size_t lanes = 8;
@@ -96,7 +98,7 @@ template <typename Work>
 template <typename Work>
 auto vectorized(const Work &work) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return with_avx2(work);
+    if (has_avx2) return with_avx2(work);
 #endif
     return with_any_processor(work);
 }

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the processor offers, asked of itself: the compilers' own runtimes do not all tell the truth when one builds for
+// another platform.
+#pragma once
+
+namespace photon_maps {
+
+#if defined(__x86_64__)
+/// Whether it has what the library is compiled for (x86-64-v2: SSE4.2 and POPCNT).
+extern const bool has_baseline;
+/// Whether it has AVX2, and the operating system keeps the registers of it.
+extern const bool has_avx2;
+#endif
+
+}  // namespace photon_maps

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds for another platform by the compiler of the Python package ziglang.
+# ZIG_COMPILER: the program. ZIG_TARGET: processor-system-ABI.version, as `zig targets` has them.
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES ZIG_COMPILER ZIG_TARGET)
+string(REGEX MATCH "^[^-]+" CMAKE_SYSTEM_PROCESSOR ${ZIG_TARGET})
+if(ZIG_TARGET MATCHES "-linux-")
+    set(CMAKE_SYSTEM_NAME Linux)
+elseif(ZIG_TARGET MATCHES "-windows-")
+    set(CMAKE_SYSTEM_NAME Windows)
+elseif(ZIG_TARGET MATCHES "-macos")
+    set(CMAKE_SYSTEM_NAME Darwin)
+endif()
+# Optimised even for CMake's own checks, or the compiler would build its C++ library a second time for those.
+set(target -target ${ZIG_TARGET} -O3)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+    list(APPEND target -mcpu=x86_64_v2)
+endif()
+set(CMAKE_C_COMPILER ${ZIG_COMPILER} cc ${target})
+set(CMAKE_CXX_COMPILER ${ZIG_COMPILER} c++ ${target})
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
+set(CMAKE_MACOSX_RPATH OFF)

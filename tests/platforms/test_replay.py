@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The libraries that users get, on systems and processors other than this machine's: the same pictures.
+
+Windows is stood for by wine, processors without AVX2 by qemu; both run the very files of the packages.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import tomllib
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from reference_scenes import CAUSTIC, CORNELL, ReferenceScene
+from shapes import box_filtered
+
+from engine.passes import Pass
+from engine.session import Session
+from tests.platforms.recording import recorded
+
+ROOT = Path(__file__).resolve().parents[2]
+VERSION = tomllib.loads((ROOT / "blender_manifest.toml").read_text())["version"]
+BUILD = ROOT / "build" / "replay"
+WINE = "/usr/lib/wine/wine64"
+
+
+@dataclass(frozen=True)
+class Libraries:
+    """The library of a package, and the Embree beside it."""
+
+    native: Path
+    embree: Path
+
+
+def unpacked(platform: str, folder: Path) -> Libraries:
+    """Unpack the wheels of a package for Python 3.11, as Blender does."""
+    with zipfile.ZipFile(ROOT / "dist" / f"photon_maps-{VERSION}-{platform}.zip") as package:
+        for name in package.namelist():
+            if name.endswith(".whl") and "cp313" not in name:
+                zipfile.ZipFile(io.BytesIO(package.read(name))).extractall(folder)
+    (native,) = [path for path in (folder / "photon_maps_native").iterdir() if path.suffix in {".so", ".dll"}]
+    (embree,) = (folder / "embreex.libs").glob("*embree4*")
+    return Libraries(native, embree)
+
+
+def record(path: Path, scenes: tuple[ReferenceScene, ...], passes: int, **settings: int) -> list[np.ndarray]:
+    """Record whole renders as calls of the C interface, and return their pictures."""
+    with pytest.MonkeyPatch.context() as patch, recorded(patch) as recorder:
+        for scene in scenes:
+            with Session(scene.data(), box_filtered(**settings), frozenset({Pass.COMBINED})) as session:
+                for _ in range(passes):
+                    assert session.step()
+                session.read(Pass.COMBINED)
+    recorder.write(path)
+    return recorder.pictures
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory) -> Path:
+    """Two renders: of diffuse walls and of a caustic."""
+    path = tmp_path_factory.mktemp("recording") / "recording"
+    pictures = record(path, (CORNELL, CAUSTIC), passes=4, threads=2)
+    assert len(pictures) == 2 and all(picture.mean() > 0.01 for picture in pictures)
+    return path
+
+
+def replay(program: list[str], libraries: tuple[str, str], recording: Path, **environment: str) -> np.ndarray:
+    """Run the recording and return the pictures, one after the other."""
+    pictures = recording.with_name("pictures")
+    result = subprocess.run(
+        [*program, *libraries, recording.name, pictures.name],
+        cwd=recording.parent,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    if result.returncode != 0:
+        raise RuntimeError(result.stderr)
+    values = np.fromfile(pictures, np.float32)
+    pictures.unlink()
+    return values
+
+
+def difference(pictures: np.ndarray, expected: np.ndarray) -> float:
+    """Return the largest difference of a pixel over its value, or over the mean where it is darker."""
+    assert pictures.shape == expected.shape
+    return float((np.abs(pictures - expected) / np.maximum(expected, expected.mean())).max())
+
+
+@pytest.fixture(scope="module")
+def on_linux(tmp_path_factory) -> tuple[str, str]:
+    """The paths of the Linux package's libraries."""
+    libraries = unpacked("linux-x64", tmp_path_factory.mktemp("linux"))
+    return str(libraries.native), str(libraries.embree)
+
+
+@pytest.fixture(scope="module")
+def expected(recording, on_linux) -> np.ndarray:
+    """The pictures of the Linux package on this machine."""
+    return replay([str(BUILD / "replay")], on_linux, recording)
+
+
+def test_the_recording_says_all(recording, expected, tmp_path):
+    """The library that Python loads and that of the package make the same of it; each has its own compiler."""
+    (picture,) = record(tmp_path / "again", (CORNELL,), passes=4, threads=1)
+    assert difference(expected[: picture.size], picture) <= 1e-5
+
+
+def test_windows_makes_the_same_pictures(recording, expected, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("windows")
+    libraries = unpacked("windows-x64", folder)
+    paths = (f"Z:{libraries.native}".replace("/", "\\"), f"Z:{libraries.embree}".replace("/", "\\"))
+    environment = {"WINEPREFIX": str(ROOT / "build" / "wine"), "WINEDEBUG": "-all"}
+    pictures = replay([WINE, str(BUILD / "replay.exe")], paths, recording, **environment)
+    assert difference(pictures, expected) <= 1e-4
+
+
+def test_a_processor_without_avx2_makes_the_same_pictures(on_linux, tmp_path):
+    # One short pass: qemu takes some thirty times as long.
+    recording = tmp_path / "recording"
+    record(recording, (CAUSTIC,), passes=1, threads=1, photon_count=5000)
+    slow = ["qemu-x86_64", "-cpu", "Nehalem", str(BUILD / "replay")]
+    expected = replay([str(BUILD / "replay")], on_linux, recording)
+    assert expected.mean() > 0.01
+    # Embree has other kernels there, whose last bits a single pass of few photons through glass carries on.
+    assert difference(replay(slow, on_linux, recording), expected) <= 1e-3
+
+
+def test_a_processor_that_is_too_old_is_told(recording, on_linux):
+    with pytest.raises(RuntimeError, match="this processor lacks SSE4"):
+        replay(["qemu-x86_64", "-cpu", "core2duo", str(BUILD / "replay")], on_linux, recording)
+
+
+def test_another_library_in_place_of_embree_is_told(recording, on_linux):
+    with pytest.raises(RuntimeError, match=r"Embree cannot be loaded .* has no function rtcNewDevice"):
+        replay([str(BUILD / "replay")], (on_linux[0], on_linux[0]), recording)
