@@ -85,12 +85,14 @@ def _render_layer(
     started, cpu_started = time.monotonic(), time.process_time()
     camera = engine.camera_override
     if camera is None or camera.type != "CAMERA":  # Blender lets any object be the active camera
+        messages.add(depsgraph.scene.name, "has no camera.", "Add one and make it the active camera.")
         _fail(engine, "The scene has no camera. Add one and make it the active camera.")
         return (), None
     passes = wanted_passes(depsgraph.view_layer_eval)
     for info in passes:
         engine.add_pass(info.name, len(info.channels), info.channels, layer=depsgraph.view_layer_eval.name)
 
+    last_photons.forget(depsgraph.scene.session_uid)  # with the scene that they keep, which a new one replaces
     engine.update_stats("", "Reading the scene")
     scene = read_scene(depsgraph, camera.evaluated_get(depsgraph), messages, engine.test_break)
     if scene is None:

@@ -7,6 +7,7 @@ that they were traced in.
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -80,7 +81,12 @@ def changes() -> int:
     return _changes
 
 
+def forget_others(scene_uids: Set[int]) -> None:
+    """Drop the photons of all but these scenes; their memory is free once nobody draws them any more."""
+    for key in [key for key in _photons if key[0] not in scene_uids]:
+        del _photons[key]
+
+
 def forget(scene_uid: int | None = None) -> None:
     """Drop the photons of a scene, or of all; their memory is free once nobody draws them any more."""
-    for key in [key for key in _photons if scene_uid in (None, key[0])]:
-        del _photons[key]
+    forget_others(set() if scene_uid is None else {key[0] for key in _photons} - {scene_uid})

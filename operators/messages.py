@@ -77,12 +77,4 @@ def objects_that_use(name: str, layer: bpy.types.ViewLayer) -> list[bpy.types.Ob
 
 CLASSES = (PHOTON_MAPS_OT_select_named, PHOTON_MAPS_OT_copy_diagnostics)
 
-
-def register() -> None:
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -17,8 +17,9 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
     bl_idname = "photon_maps.search_disc"
     bl_label = "Search Disc"
     bl_description = (
-        "Move the mouse over surfaces and see the disc that the last render's estimate there counted photons in: how "
-        "many it holds, the irradiance they bring and its standard error. Esc or the right button ends it"
+        "Move the mouse over surfaces and see the disc that an estimate of the last render counts photons in there "
+        "(with Adaptive the largest): how many it holds, the irradiance they bring and its standard error. Esc or the "
+        "right button ends it"
     )
 
     @classmethod
@@ -35,7 +36,8 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set("Search Disc  |  Esc, right button: end")
+        self._workspace = context.workspace  # another may be current at the end
+        self._workspace.status_text_set("Search Disc  |  Esc, right button: end")
         self._find(context, event)
         return {"RUNNING_MODAL"}
 
@@ -59,8 +61,7 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
 
     def _end(self, context: bpy.types.Context) -> None:
         search_disc.show(None)
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
+        self._workspace.status_text_set(None)
         redraw_views(context)
 
 
@@ -74,7 +75,7 @@ def find_disc(context: bpy.types.Context, x: int, y: int) -> search_disc.SearchD
         if len(under) != 1 or under[0].type != "WINDOW":  # a sidebar lies over the view
             continue
         (region,) = under
-        place, view = (x - region.x, y - region.y), area.spaces.active.region_3d
+        place, view = (x - region.x, y - region.y), region.data  # in a quad view each region has its own
         origin, direction = region_2d_to_origin_3d(region, view, place), region_2d_to_vector_3d(region, view, place)
         probe = photons.snapshot.probe(tuple(origin), tuple(direction))
         if probe is not None:

@@ -82,12 +82,4 @@ def _draw_message(box: bpy.types.UILayout, message: Message, context: bpy.types.
 
 CLASSES = (PHOTON_MAPS_PT_messages, PHOTON_MAPS_PT_statistics)
 
-
-def register() -> None:
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

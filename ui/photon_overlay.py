@@ -40,7 +40,7 @@ class _Drawn:
     lines: gpu.types.GPUBatch | None
 
 
-_drawn: dict[int, _Drawn] = {}  #: by scene
+_drawn: dict[tuple[int, str], _Drawn] = {}  #: by scene and view layer
 _budgets: dict[int, PointBudget] = {}  #: by region
 _moved = 0.0  #: when a moving view was drawn last
 _seen = 0  #: of last_photons.changes(), when photons were drawn last
@@ -113,18 +113,18 @@ def _current(context: bpy.types.Context) -> _Drawn | None:
     from ..engine.photon_look import look_at
 
     scene = context.scene
-    photons = last_photons.recall(scene.session_uid, context.view_layer.name)
+    key = scene.session_uid, context.view_layer.name
+    photons = last_photons.recall(*key)
     if photons is None:
-        _drawn.pop(scene.session_uid, None)
         return None
-    look, drawn = look_of(scene), _drawn.get(scene.session_uid)
+    look, drawn = look_of(scene), _drawn.get(key)
     if drawn is None or drawn.photons is not photons or drawn.look != look:
         points = look_at(photons, look)
         # In any order, so that the first ones stand for all.
         order = np.random.default_rng(0).permutation(len(points.positions))
         batch = _batch("POINTS", point_shader(), points.positions[order], points.colors[order])
         lines = _batch("LINES", gpu.shader.from_builtin("FLAT_COLOR"), points.lines, points.line_colors)
-        drawn = _drawn[scene.session_uid] = _Drawn(photons, look, points, batch, lines)
+        drawn = _drawn[key] = _Drawn(photons, look, points, batch, lines)
     return drawn
 
 
@@ -188,12 +188,16 @@ def _settle() -> float | None:
 
 
 def _look() -> float | None:
-    """Draw anew when there are other photons, while any scene shows them."""
-    if not any(scene.photon_maps_overlay.show for scene in bpy.data.scenes):
-        return None
+    """Draw anew when there are other photons, while any scene shows them; drop those that none shows."""
+    global _seen
+    showing = {scene.session_uid for scene in bpy.data.scenes if scene.photon_maps_overlay.show}
+    last_photons.forget_others(showing)
+    for key in [key for key, drawn in _drawn.items() if last_photons.recall(*key) is not drawn.photons]:
+        del _drawn[key]
     if last_photons.changes() != _seen:
+        _seen = last_photons.changes()
         redraw_views(bpy.context)
-    return LOOK_SECONDS
+    return LOOK_SECONDS if showing else None
 
 
 def _draw_disc(disc: search_disc.SearchDisc) -> None:
@@ -234,7 +238,7 @@ def draw_in_region() -> None:
     if budget is not None and budget.is_moving:
         _moved = time.monotonic()
     scale = context.preferences.system.ui_scale
-    drawn = _drawn.get(context.scene.session_uid)
+    drawn = _drawn.get((context.scene.session_uid, context.view_layer.name))
     photons = last_photons.recall(context.scene.session_uid, context.view_layer.name)
     lines = [("No photons yet: render, in the viewport or with F12", (1.0, 1.0, 1.0))]
     if drawn is not None and photons is drawn.photons:

@@ -17,7 +17,7 @@ def name_unmet(depsgraph: bpy.types.Depsgraph, messages: Messages) -> None:
         if data.is_missing:
             messages.add(
                 data.name,
-                f'is a {data.id_type.lower()} that is missing from its library "{data.library.filepath}"; it is empty.',
+                f'is a {data.id_type.lower()} that is missing from its library "{data.library.name}"; it is empty.',
                 "Restore the file, or use File > External Data > Find Missing Files.",
             )
         for owner in (evaluated, getattr(evaluated, "node_tree", None)):

@@ -12,6 +12,8 @@ from .convert import floats, shaped, uints
 from .library import Handle, NativeRender, call, photon_arrays
 from .photons import MapProbe, PhotonKind, PhotonSegments, Probe, Received, TracedPhotons
 
+MOST_USUAL_SEGMENTS = 8  #: of one photon's way
+
 
 class NativeSnapshot(Handle):
     """The photons of one pass and what they came from; it keeps the scene in the helper. Any thread may ask it."""
@@ -43,12 +45,15 @@ class NativeSnapshot(Handle):
     def segments(self, is_caustic: bool, numbers: np.ndarray) -> PhotonSegments:
         """Return the ways of photons of the caustic or the global map, by their numbers."""
         numbers = shaped(numbers, np.uint32, (None,), "numbers")
-        count, native = c_uint64(), (structs.PmPhotonSegment * 0)()
-        for _ in range(2):  # how many there are; then themselves
-            native = (structs.PmPhotonSegment * count.value)()
-            arguments = (uints(numbers), len(numbers), native, count.value, byref(count))
+        count = c_uint64(MOST_USUAL_SEGMENTS * len(numbers))
+        while True:  # again if there are more
+            room = count.value
+            native = (structs.PmPhotonSegment * room)()
+            arguments = (uints(numbers), len(numbers), native, room, byref(count))
             call("pm_snapshot_segments", self.handle, is_caustic, *arguments)
-        rows = np.ctypeslib.as_array(native)
+            if count.value <= room:
+                break
+        rows = np.ctypeslib.as_array(native)[: count.value]
         return PhotonSegments(*(rows[name] for name in ("start", "end", "flux", "bounce", "source", "number")))
 
     def received(self) -> list[Received]:
@@ -63,7 +68,7 @@ class NativeSnapshot(Handle):
         ]
 
     def probe(self, origin: np.ndarray, direction: np.ndarray) -> Probe | None:
-        """Estimate the irradiance at the first surface along a ray, as the pass did.
+        """Estimate the irradiance at the first surface along a ray, by the pass's radius: with ADAPTIVE the largest.
 
         :param origin: (3,) in the world.
         :param direction: (3,) a unit vector.

@@ -54,7 +54,7 @@ Embree::Embree(const std::string &path) {
         library_.emplace(path);
         functions_ = resolve_functions(*library_);
     } catch (const LibraryError &error) {
-        throw EmbreeError("Embree cannot be loaded (" + path + "): " + error.what());
+        throw EmbreeError(std::string("Embree cannot be loaded: ") + error.what());
     }
     device_ = functions_.rtcNewDevice(nullptr);
     if (!device_) throw EmbreeError("Embree cannot be started on this processor");
@@ -63,7 +63,7 @@ Embree::Embree(const std::string &path) {
     if (version_ < 40300 || version_ >= 50000) {
         functions_.rtcReleaseDevice(device_);
         throw EmbreeError("Embree 4.3 or later of version 4 is needed, but version number " + std::to_string(version_) +
-                          " was found at " + path);
+                          " was found");
     }
 }
 

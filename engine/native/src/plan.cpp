@@ -63,7 +63,6 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
                                           ? std::vector<double>{1, 0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25}
                                           : std::vector<double>{1};
     Plan best;
-    double best_cost = std::numeric_limits<double>::infinity();
     for (const double global : counts_of(noise.global))
         for (const double caustic : counts_of(noise.caustic))
             for (const double radius : radii) {
@@ -79,8 +78,7 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
                     cost += caustic * noise.caustic.cost;
                 }
                 cost *= passes_needed(noise.camera_variance, photons, blur, noise.lack, error, shrinks);
-                if (cost >= best_cost) continue;
-                best_cost = cost;
+                if (cost >= best.cost) continue;
                 best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
                         1,
                         static_cast<float>(radius),

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <limits>
 #include <vector>
 
 #include "camera_pass.h"
@@ -47,8 +48,8 @@ struct PilotNoise {
 struct Plan {
     PhotonCounts counts;
     uint32_t light_samples = 1;
-    float global_radius = 1;  ///< over that of the pilot passes
-    double cost = 0;          ///< in rays, until the picture has its error
+    float global_radius = 1;                                ///< over that of the pilot passes
+    double cost = std::numeric_limits<double>::infinity();  ///< in rays, until the picture has its error
 };
 
 /// Chooses what comes to an error in the least time. The variance of a map falls with its photons and with the square

@@ -138,9 +138,13 @@ void Render::make_plan() {
     Plan plan;
     for (const Pilot &pilot : pilots) {
         const Plan found = plan_for(pilot.noise, error, settings_.use_progressive);
-        if (best && found.cost >= plan.cost) continue;
+        if (!(found.cost < plan.cost)) continue;
         best = &pilot;
         plan = found;
+    }
+    if (!best) {  // noise beyond all numbers tells nothing
+        counts_ = usual;
+        return;
     }
     pilot_noise_ = best->noise.with_light_samples(plan.light_samples);
     light_samples_ *= plan.light_samples;
