@@ -2,7 +2,7 @@
 """Automatic against settings by hand: CPU-seconds to an error of 2 % with nothing set, and with the best of a sweep.
 
 Photons and radii of the sweep are multiples of those that Automatic chooses, so it looks where the best are to be
-expected; final gather and path tracing are tried too. Writes sweep.csv to build/chart.
+expected, with as many light samples; final gather and path tracing are tried too. Writes sweep.csv to build/chart.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ def by_hand(scene: Scene, chosen: Statistics) -> Iterator[tuple[str, RenderSetti
     if radius > 0:
         for photons, times, estimate in product(PHOTONS, RADII, ESTIMATES):
             fields = {"photon_count": int(photons * photon_count), "radius": times * radius, "estimate": estimate}
+            fields["light_samples"] = chosen.light_samples
             name = f"{estimate.name}, {photons:g} x {photon_count} photons, {times:g} x radius {radius:.3g}"
             yield name, DEFAULT.settings(scene, 0.0, **(off | fields))
     yield "photons and radii of no plan", DEFAULT.settings(scene, 0.0, **off)

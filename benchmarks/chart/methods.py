@@ -45,6 +45,7 @@ METHODS = {
         DEFAULT,
         Method("no plan", {"use_auto": False}),
         Method("one radius", {"estimate": Estimate.RADIUS}),
+        Method("one light sample", {"light_samples": 1}),
         Method("nearest 100", {"estimate": Estimate.NEAREST, "nearest_count": 100}),
         Method("nearest 500", {"estimate": Estimate.NEAREST, "nearest_count": 500}),
         Method("no filter", {"filter": Filter.NONE}),
