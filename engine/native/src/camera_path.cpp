@@ -11,6 +11,11 @@ namespace {
 /// and cost as much as all the rest of their pixel.
 constexpr float roulette_scale = 8;
 
+/// Scatterings after which a path goes on by one of reflection and refraction instead of both. What is reflected in
+/// water or glass is a small share of the light, but often a lamp: left to chance it was most of the noise of what the
+/// eye sees there.
+constexpr uint32_t whole_scatterings = 3;
+
 /// The same photons gathered within half the radius.
 PhotonGather halved(PhotonGather gather) {
     gather.kernel.radius /= 2;
@@ -148,6 +153,8 @@ void CameraPath::plan(const SurfacePoint &hit, const Shading &shading) {
     go_straight_ = straight * scale;
     go_glossy_ = glossy * scale;
     go_diffuse_ = diffuse * scale;
+    splits_ = word_.length < whole_scatterings && average(albedo(shading, glossy_reflection)) > 0 &&
+              average(albedo(shading, glossy_transmission)) > 0;
     guide_.reset();
     if (!pass_.importance || go_diffuse_ <= 0) return;
     const auto u = sequence_.next();
@@ -164,24 +171,40 @@ std::optional<ScatterSample> CameraPath::draw(const SurfacePoint &hit, const Sha
 bool CameraPath::go_on(const SurfacePoint &hit, const Shading &shading) {
     if (go_straight_ + go_glossy_ + go_diffuse_ <= 0) return false;
     const auto u = sequence_.next();
-    const bool is_straight = u[3] < go_straight_;
-    if (is_straight) {
-        throughput_ *= shading.transparency / go_straight_;
-        if (state_.transparent_depth == max_transparent_depth || !survives(throughput_, u[3] / go_straight_))
-            return false;
-        if (!is_described_) first_depth_ += hit.distance;
-        state_ = passed(state_);
-        // The ray's own density and origin stay: it is still the one that was drawn there.
-        ray_.origin = hit.origin_towards(ray_.direction);
-        ray_.near = 0;
-        ray_.far -= hit.distance;
-        return true;
-    }
+    if (u[3] < go_straight_) return pass_straight(hit, shading, u[3] / go_straight_);
     const bool is_glossy = u[3] < go_straight_ + go_glossy_ || go_diffuse_ <= 0;
-    const Lobes lobes = is_glossy ? glossy_lobes : diffuse_lobes;
     const float chosen = is_glossy ? go_glossy_ : go_diffuse_;
+    if (chosen <= 0) return false;
     const float left = (u[3] - go_straight_ - (is_glossy ? 0 : go_glossy_)) / chosen;
-    const auto drawn = chosen > 0 ? draw(hit, shading, lobes, {u[0], u[1], u[2]}) : std::nullopt;
+    const std::array<float, 4> rest{u[0], u[1], u[2], left};
+    if (!is_glossy) return scatter(hit, shading, diffuse_lobes, chosen, rest);
+    if (!splits_) return scatter(hit, shading, glossy_lobes, chosen, rest);
+    // Refraction first: it mostly brings more, so its random numbers are to be as even as without the other.
+    CameraPath reflected = *this;
+    if (scatter(hit, shading, glossy_transmission, chosen, rest)) follow();
+    if (reflected.scatter(hit, shading, glossy_reflection, chosen, rest)) reflected.follow();
+    return false;
+}
+
+/// Goes on through a transparent surface.
+/// @param u in [0, 1), for the roulette
+bool CameraPath::pass_straight(const SurfacePoint &hit, const Shading &shading, float u) {
+    throughput_ *= shading.transparency / go_straight_;
+    if (state_.transparent_depth == max_transparent_depth || !survives(throughput_, u)) return false;
+    if (!is_described_) first_depth_ += hit.distance;
+    state_ = passed(state_);
+    // The ray's own density and origin stay: it is still the one that was drawn there.
+    ray_.origin = hit.origin_towards(ray_.direction);
+    ray_.near = 0;
+    ray_.far -= hit.distance;
+    return true;
+}
+
+/// Goes on by some lobes, which were chosen with a probability.
+/// @param u in [0, 1), the last for the roulette
+bool CameraPath::scatter(const SurfacePoint &hit, const Shading &shading, Lobes lobes, float chosen,
+                         const std::array<float, 4> &u) {
+    const auto drawn = draw(hit, shading, lobes, {u[0], u[1], u[2]});
     if (!drawn) return false;
     if (drawn->lobe == glossy_transmission && pass_.scene.mesh_of(hit).is_closed) {
         if (!hit.is_backfacing)
@@ -190,7 +213,7 @@ bool CameraPath::go_on(const SurfacePoint &hit, const Shading &shading) {
             --bodies_;
     }
     throughput_ *= drawn->weight / chosen;
-    if (!survives(throughput_, left)) return false;
+    if (!survives(throughput_, u[3])) return false;
     origin_ = {drawn->is_singular ? 0 : chosen * drawn->pdf, hit.position, hit.shading_normal,
                (lobes_of(shading) & transmissive_lobes) != 0, asks_every_source()};
     word_ = word_.then(lobes);
@@ -210,7 +233,9 @@ bool CameraPath::survives(Vec3 weight, float u) {
 
 PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
                               RayCounts &counts, Levels *levels) {
-    return CameraPath(pass, is_probe, sequence, counts, levels).trace(ray);
+    PixelSample sample;
+    CameraPath(pass, ray, is_probe, sequence, counts, levels, sample).follow();
+    return sample;
 }
 
 }  // namespace photon_maps

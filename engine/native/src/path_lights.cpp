@@ -41,7 +41,9 @@ void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, 
         if (!(light->visibility & visible_kind(lobe)) || is_gathered(word_.then(parts[part]))) continue;
         scattered[part] = evaluate(shading, parts[part], light->direction, transport(hit));
         if (max_component(scattered[part]) <= 0) continue;
-        const float other = light->pdf > 0 ? other_pdf(shading, parts[part], choice.source, light->direction) : 0;
+        const float other = light->pdf > 0 ? other_pdf(shading, part == 1 && splits_ ? lobe : parts[part],
+                                                       choice.source, light->direction)
+                                           : 0;
         const float mis = other > 0 ? power_heuristic(light->pdf * choice.probability, other) : 1;
         scattered[part] = scattered[part] * (share * mis / choice.probability);
     }
@@ -72,7 +74,7 @@ RayState CameraPath::receiver(const Shading &shading) const {
 
 /// Density with which a ray by these lobes will go in a direction to meet a source.
 float CameraPath::other_pdf(const Shading &shading, Lobes lobes, size_t source, Vec3 direction) const {
-    float probability = lobes == glossy_lobes ? go_glossy_ : go_diffuse_;
+    float probability = lobes & glossy_lobes ? go_glossy_ : go_diffuse_;
     if (asks_emitters() && lobes == diffuse_lobes) probability = source == pass_.lights.triangles_source() ? 1 : 0;
     if (guide_ && lobes == diffuse_lobes) return probability * pdf_guided(*guide_, shading, direction);
     return probability > 0 ? probability * pdf(shading, lobes, direction) : 0;

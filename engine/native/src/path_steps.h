@@ -18,15 +18,22 @@ constexpr size_t few_sources = 8;
 /// The steps of one path. Those that ask the lights are in path_lights.cpp, the others in camera_path.cpp.
 class CameraPath {
   public:
-    CameraPath(const CameraPass &pass, bool is_probe, Sequence &sequence, RayCounts &counts, Levels *levels)
-        : pass_(pass), is_probe_(is_probe), sequence_(sequence), counts_(counts), levels_(levels) {}
-
-    PixelSample trace(const Ray &ray) {
-        ray_ = ray;
+    CameraPath(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence, RayCounts &counts,
+               Levels *levels, PixelSample &sample)
+        : pass_(pass),
+          is_probe_(is_probe),
+          sequence_(sequence),
+          counts_(counts),
+          levels_(levels),
+          sample_(sample),
+          ray_(ray) {
         state_.kinds = ray_.kinds = 1u << PM_RAY_CAMERA;
+    }
+
+    /// Adds to the sample what the path brings.
+    void follow() {
         while (step()) {
         }
-        return sample_;
     }
 
   private:
@@ -56,6 +63,9 @@ class CameraPath {
     std::optional<ScatterSample> draw(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
                                       const std::array<float, 3> &u) const;
     bool go_on(const SurfacePoint &hit, const Shading &shading);
+    bool pass_straight(const SurfacePoint &hit, const Shading &shading, float u);
+    bool scatter(const SurfacePoint &hit, const Shading &shading, Lobes lobes, float chosen,
+                 const std::array<float, 4> &u);
     bool survives(Vec3 weight, float u);
     Transport transport(const SurfacePoint &hit) const {
         const bool began_inside = hit.is_backfacing && bodies_ == 0;
@@ -90,7 +100,7 @@ class CameraPath {
     Sequence &sequence_;
     RayCounts &counts_;
     Levels *levels_;  ///< of the caustic map; null: it is asked by one radius
-    PixelSample sample_;
+    PixelSample &sample_;
     Ray ray_;
     RayState state_;
     Vec3 throughput_{1, 1, 1};
@@ -101,6 +111,7 @@ class CameraPath {
     float first_depth_ = 0;  ///< of the transparent surfaces passed so far, along the camera's ray
     /// Probabilities of the three ways to go on from the present vertex, and where to if diffusely.
     float go_diffuse_ = 0, go_glossy_ = 0, go_straight_ = 0;
+    bool splits_ = false;  ///< there: what goes on by glossy lobes goes on by reflection and by refraction
     std::optional<Guide> guide_;
 };
 

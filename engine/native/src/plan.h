@@ -53,7 +53,7 @@ struct Plan {
 };
 
 /// Chooses what comes to an error in the least time. The variance of a map falls with its photons and with the square
-/// of the radius, its blur grows with the fourth power of the radius.
+/// of the radius, its blur grows with the radius.
 /// @param error > 0, relative
 /// @param shrinks whether radii shrink from pass to pass (shrunk_radius)
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks);

@@ -111,9 +111,16 @@ class Render {
     std::vector<PhotonTracing> tracings(uint32_t index) const;
     bool is_planned() const;
     void choose_radii();
+    void set_radii(Radii radii);
     void make_plan();
+    /// A way to bring the light of diffuse bounces, and the plan for it.
+    struct Choice {
+        Pilot pilot;
+        Plan plan;
+    };
+    std::optional<Choice> choose_by_pilots(uint32_t first, const PhotonCounts &usual, float widened);
     std::vector<Indirect> ways() const;
-    std::vector<Pilot> run_pilot_passes();
+    std::vector<Pilot> run_pilot_passes(uint32_t first);
     CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,
                            uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;

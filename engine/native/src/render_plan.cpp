@@ -38,7 +38,13 @@ void Render::choose_radii() {
     if (is_chosen && is_nested()) radii.caustic *= largest_nested;
     if (is_planned()) radii.indirect *= pilot_radius;
 
+    set_radii(radii);
+}
+
+/// Takes kernels for the first pass, and finds the edges and the bends that they meet.
+void Render::set_radii(Radii radii) {
     // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
+    const bool is_chosen = !(settings_.kernel.radius > 0);
     Kernel largest = settings_.kernel;
     largest.radius = std::max(radii.indirect, radii.caustic);
     if (largest.radius > 0) {
@@ -70,12 +76,13 @@ std::vector<Indirect> Render::ways() const {
 
 /// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
 /// is summed would not be blind to it.
-std::vector<Pilot> Render::run_pilot_passes() {
+/// @param first number of passes that other pilots had
+std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
     std::vector<Pilot> pilots;
     for (const Indirect way : ways()) pilots.emplace_back(way, PilotPixels(camera_, is_nested()));
     uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
     for (uint32_t i = 0; i < PilotPixels::passes; ++i) {
-        const uint32_t index = std::numeric_limits<uint32_t>::max() - i;
+        const uint32_t index = std::numeric_limits<uint32_t>::max() - first - i;
         TracedPhotons photons = trace(index);
         rays += photons.rays - photons.caustic_rays;
         caustic_rays += photons.caustic_rays;
@@ -116,46 +123,71 @@ std::vector<Pilot> Render::run_pilot_passes() {
 }
 
 void Render::make_plan() {
-    constexpr uint64_t most_pilot_photons = 1 << 13;
+    constexpr uint64_t few_pilot_photons = 1 << 13;
+    constexpr double share_of_pilots = 0.02, worthwhile = 4, most = 8;
     if (!is_planned() || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
 
-    // See what a few passes bring to some pixels.
+    // See what a few passes of few photons bring to some pixels.
     const PhotonCounts usual = counts_;
-    counts_ = {std::min(usual.global, most_pilot_photons), std::min(usual.caustic, most_pilot_photons)};
-    std::vector<Pilot> pilots = run_pilot_passes();
+    counts_ = {std::min(usual.global, few_pilot_photons), std::min(usual.caustic, few_pilot_photons)};
+    std::optional<Choice> choice = choose_by_pilots(0, usual, pilot_radius);
+    if (!choice) {  // noise beyond all numbers tells nothing
+        counts_ = usual;
+        return;
+    }
+
+    // Where there will be much to do, look again with more photons: noise hides how kernels blur.
+    const PilotNoise &noise = choice->pilot.noise;
+    const double pilot_cost =
+        PilotPixels::passes * (noise.global.cost * noise.global.count + noise.caustic.cost * noise.caustic.count);
+    const double times = share_of_pilots * choice->plan.cost / pilot_cost;
+    if (pilot_cost > 0 && times >= worthwhile) {
+        const auto more = [&](uint64_t count) {
+            return static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
+        };
+        counts_ = {more(counts_.global), more(counts_.caustic)};
+        const float widened = std::max(1.0f, choice->plan.global_radius);
+        set_radii({first_radii_->indirect * widened, first_radii_->caustic});
+        if (auto second = choose_by_pilots(PilotPixels::passes, usual, pilot_radius * widened))
+            choice = std::move(second);
+    }
+
+    const Plan &plan = choice->plan;
+    pilot_noise_ = choice->pilot.noise.with_light_samples(plan.light_samples);
+    light_samples_ *= plan.light_samples;
+    indirect_ = choice->pilot.indirect;
+    counts_ = plan.counts;
+    // Maps that are not built have no radius; their count is what they would have.
+    set_radii({traces(PhotonPurpose::global) ? first_radii_->indirect * plan.global_radius : 0,
+               traces(PhotonPurpose::caustic) ? first_radii_->caustic : 0});
+    if (first_radii_->indirect == 0) counts_.global = usual.global;
+    if (first_radii_->caustic == 0) counts_.caustic = usual.caustic;
+}
+
+/// Runs pilot passes, and chooses what comes to the error in the least time; without one to stop at, to that which most
+/// pictures are made for.
+/// @param first as of run_pilot_passes()
+/// @param usual photons without a plan
+/// @param widened the global map's radius over that without a plan
+/// @return nothing if no way has a cost
+std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const PhotonCounts &usual, float widened) {
+    std::vector<Pilot> pilots = run_pilot_passes(first);
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
-    const double photons_in_kernel = double{usual_photons_in_kernel} * pilot_radius * pilot_radius *
+    const double photons_in_kernel = double{usual_photons_in_kernel} * widened * widened *
                                      static_cast<double>(counts_.global) / static_cast<double>(usual.global);
     pilots.front().noise.gather_cost =
         static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;
 
-    // What comes to the error in the least time; without one to stop at, to that which most pictures are made for.
     constexpr double usual_error = 0.02;
     const double error = settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error;
-    const Pilot *best = nullptr;
-    Plan plan;
+    std::optional<Choice> best;
     for (const Pilot &pilot : pilots) {
-        const Plan found = plan_for(pilot.noise, error, settings_.use_progressive);
-        if (!(found.cost < plan.cost)) continue;
-        best = &pilot;
-        plan = found;
+        const Plan plan = plan_for(pilot.noise, error, settings_.use_progressive);
+        if (plan.cost < (best ? best->plan.cost : Plan{}.cost)) best = {pilot, plan};
     }
-    if (!best) {  // noise beyond all numbers tells nothing
-        counts_ = usual;
-        return;
-    }
-    pilot_noise_ = best->noise.with_light_samples(plan.light_samples);
-    light_samples_ *= plan.light_samples;
-    indirect_ = best->indirect;
-    counts_ = plan.counts;
-    first_radii_->indirect *= plan.global_radius;
-    // Maps that are not built have no radius; their count is what they would have.
-    if (!traces(PhotonPurpose::global)) first_radii_->indirect = 0;
-    if (!traces(PhotonPurpose::caustic)) first_radii_->caustic = 0;
-    if (first_radii_->indirect == 0) counts_.global = usual.global;
-    if (first_radii_->caustic == 0) counts_.caustic = usual.caustic;
+    return best;
 }
 
 }  // namespace photon_maps

@@ -47,7 +47,7 @@ void check_radius(Checks &checks) {
     PilotNoise sharp = room(), blurred = room();
     sharp.global.blur = 1e-9;
     blurred.global.blur = 0.04 * 0.04;
-    checks.near(double{plan_for(sharp, 0.02, true).global_radius}, 1, 0, "no blur, no smaller kernels");
+    checks.that(plan_for(sharp, 0.02, true).global_radius > 1, "no blur, wider kernels");
     checks.that(plan_for(blurred, 0.01, true).global_radius < 0.8f, "blur beyond the error wants smaller kernels");
     checks.that(plan_for(blurred, 0.05, true).global_radius > plan_for(blurred, 0.005, true).global_radius,
                 "the less error, the less blur");
