@@ -170,7 +170,8 @@ calibration: build/native/stamp .venv/chart.stamp
 sweep: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.sweep_bench $(SWEEP)
 
-prediction: build/native/stamp .venv/test.stamp .venv/system.stamp
+# Draws build/chart/prediction.png of docs/chart_of_a_scene.md.
+prediction: build/native/stamp .venv/chart.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)
 
 # The scene, figures and tables of docs/seed.md; the path-traced reference is kept there from run to run.

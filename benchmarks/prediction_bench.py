@@ -2,7 +2,7 @@
 """The time that "Chart Speed vs Accuracy" foretells to an error, over what the full picture then takes.
 
 The full picture is measured against a reference of its own: two long renders with other seeds and four times the
-photons. Seconds are CPU time. Writes prediction.csv to build/chart.
+photons. Seconds are CPU time. Writes prediction.csv and prediction.png to build/chart.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import bpy
+from matplotlib import pyplot
 
 from benchmarks.prediction_scenes import SCENES
 from engine import properties, render_engine
@@ -53,6 +54,7 @@ def main() -> None:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
+    draw(rows)
     kept = sum(1 / WANTED <= row["ratio"] <= WANTED for row in rows)
     print(f"{kept} of {len(rows)} within a factor {WANTED}")
 
@@ -71,6 +73,24 @@ def measure(name: str, build: Callable[[], bpy.types.Scene], arguments: argparse
     seconds = math.inf if predicted is None else predicted.cpu_seconds - chart.full.setup_seconds
     return {"scene": name, "target": target, "predicted": seconds, "true": true, "ratio": seconds / true,
             **error_ratios(chart, truth)}  # fmt: skip
+
+
+def draw(rows: list[dict[str, object]]) -> None:
+    """Draw foretold times over true ones."""
+    pyplot.switch_backend("Agg")  # without a display
+    figure, axes = pyplot.subplots(figsize=(6, 5), dpi=100)
+    for row in rows:
+        label = f"{row['scene']}, to {row['target']:.1%}"
+        axes.plot([row["true"]], [row["predicted"]], "o", label=label)
+    span = [0.5, 500.0]
+    axes.plot(span, span, color="black", linewidth=1)
+    axes.fill_between(span, [end / WANTED for end in span], [end * WANTED for end in span], color="0.9")
+    axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
+    axes.set(xlabel="CPU-seconds that the full picture took", ylabel="CPU-seconds foretold")
+    axes.legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(OUT / "prediction.png")
+    pyplot.close(figure)
 
 
 def error_ratios(chart: Chart, truth: Curve) -> dict[str, float]:
