@@ -28,6 +28,11 @@ class Scaling:
     cost: float = 1.0  #: CPU time of a pass as measured, over that reckoned from the small picture
 
 
+#: The square of the blur's error over what is seen of it beside a reference whose kernels have half the radius, if that
+#: error goes with the square of the radius: as in the engine's own estimate of its error.
+UNSEEN_BLUR = (4.0 / 3.0) ** 2
+
+
 def blur_ratio(photons: float) -> float:
     """Return by what the square of the blur's error is multiplied where a pass has more photons.
 
@@ -111,7 +116,7 @@ class Run:
     def curve(self, scaling: Scaling) -> Curve | None:
         """Return error against time at full size; None if there is no point that the reference can tell."""
         small, full = np.cumsum(self.small_seconds()), np.cumsum(self.full_seconds(scaling))
-        blur = 1.0 if self.variant.loses_light else blur_ratio(scaling.photons)
+        blur = 1.0 if self.variant.loses_light else UNSEEN_BLUR * blur_ratio(scaling.photons)
         points = []
         for index, measured in enumerate(self.measurements):
             square = max(measured.square, 0.0)
