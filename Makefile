@@ -48,11 +48,11 @@ export PYTHONDONTWRITEBYTECODE := 1
 unexport PYTHONPATH PYTHONHOME
 
 # What is asked of `make demo`, `make beside` and `make chart`: by way of the environment, so that any file name will do.
-export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD
+export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart prediction calibration sweep package test test-native test-python test-gui \
+.PHONY: help demo beside seed chart limits prediction calibration sweep package test test-native test-python test-gui \
     test-versions test-wine test-campaign lint format bench clean
 
 help:
@@ -70,6 +70,7 @@ help:
 	@echo 'make prediction    the time that the chart of a scene foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
 	@echo 'make sweep     Automatic beside the best of many settings by hand: [SWEEP="--scenes gap"]'
+	@echo 'make limits    how and how badly the method fails, 15 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender on Linux, Windows and macOS, in dist'
 	@echo 'make format    bring all sources into the project style'
@@ -187,6 +188,11 @@ else
 chart: $(ZIP) .venv/system.stamp
 	@$(PYTHON) tools/chart_scene.py --extension $(ZIP) --blend "$$BLEND" --out "$$OUT" --seconds "$$SECONDS"
 endif
+
+# How and how badly the method fails: figures and tables of docs/limits.md.
+limits: build/native/stamp .venv/chart.stamp .venv/test.stamp
+	@PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.limits \
+	    --limit "$$LIMIT" $(if $(DOCUMENTS),--documents)
 
 # --- Checks ---
 

@@ -196,14 +196,15 @@ def write(path: Path, found: Mapping[str, str]) -> None:
     path.write_text("\n".join(f"## {name}\n\n{text}" for name, text in found.items()))
 
 
-def bring_into(document: Path, found: Mapping[str, str]) -> None:
-    """Replace what stands between `<!-- chart: name -->` and `<!-- chart end -->`, for every name that was measured."""
+def bring_into(document: Path, found: Mapping[str, str], subject: str = "chart") -> None:
+    """Replace what stands between `<!-- subject: name -->` and `<!-- subject end -->`, for every name that was
+    measured."""
 
     def replaced(match: re.Match[str]) -> str:
         name = match[1]
-        return f"<!-- chart: {name} -->\n{found[name]}<!-- chart end -->" if name in found else match[0]
+        return f"<!-- {subject}: {name} -->\n{found[name]}<!-- {subject} end -->" if name in found else match[0]
 
-    pattern = r"<!-- chart: ([\w ]+) -->\n.*?<!-- chart end -->"
+    pattern = rf"<!-- {subject}: ([\w ]+) -->\n.*?<!-- {subject} end -->"
     document.write_text(re.sub(pattern, replaced, document.read_text(), flags=re.DOTALL))
 
 

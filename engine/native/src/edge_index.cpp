@@ -9,7 +9,7 @@ namespace photon_maps {
 namespace {
 
 /// More entries than this are not worth their memory (4 bytes each): larger cells are.
-constexpr double max_entries = 32e6;
+constexpr double max_entries = 4e6;
 constexpr size_t max_buckets = size_t{1} << 24;
 
 }  // namespace

@@ -18,6 +18,16 @@ RayState diffuse_ray() {
     return ray;
 }
 
+/// What every source that shines weighs besides its power: a share of that of all lights.
+double even_weight(const Lights &lights) {
+    double total = 0, count = 0;
+    for (size_t s = 0; s < lights.source_count(); ++s) {
+        total += double{lights.power(s)};
+        count += lights.shines(s) ? 1 : 0;
+    }
+    return count > 0 ? double{even_share} / (1 - double{even_share}) * total / count : 0;
+}
+
 /// What the photons of one point of an emissive triangle are aimed at; both its sides shine.
 DirectionAim aim_from_triangle(Vec3 origin, Vec3 normal, std::span<const Caster> casters) {
     DirectionAim aim(0.5f);
@@ -47,11 +57,13 @@ Emission::Emission(const Scene &scene, const Lights &lights)
       lights_(lights),
       sphere_{scene.bounds().center(), scene.bounds().radius()},
       casters_(find_casters(scene)) {
-    for (size_t lamp = 0; lamp < lights.lamps().size(); ++lamp) by_power_.add(double{lights.power(lamp)});
+    const double even = even_weight(lights);
+    const auto weight = [&](size_t source) { return lights.shines(source) ? double{lights.power(source)} + even : 0; };
+    for (size_t lamp = 0; lamp < lights.lamps().size(); ++lamp) by_power_.add(weight(lamp));
     const EmissiveTriangles &triangles = lights.emissive_triangles();
     for (size_t e = 0; e < triangles.size(); ++e)
-        by_power_.add(double{triangles[e].probability} * double{triangles.power()});
-    by_power_.add(double{lights.power(lights.world_source())});
+        by_power_.add(double{triangles[e].probability} * weight(lights.triangles_source()));
+    by_power_.add(weight(lights.world_source()));
 
     if (empty()) return;
 

@@ -37,8 +37,8 @@ class Emission {
     /// Whether there is no light to emit.
     bool empty() const { return !(by_power_.total() > 0); }
 
-    /// Emits one photon: a light by its share of the power, then a point and direction by its radiance. Nothing if the
-    /// lights have no power.
+    /// Emits one photon: a light by its share of the power and a little by their number (even_share), then a point and
+    /// direction by its radiance. Nothing if the lights have no power.
     std::optional<PhotonEmission> emit(Sequence &sequence) const { return emit(by_power_, {}, sequence); }
 
     /// Whether there is anything that can focus light.

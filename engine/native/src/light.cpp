@@ -39,23 +39,28 @@ float Lights::importance(size_t source, Vec3 position) const {
     return triangles_.power() / (2 * pi * std::max(squared, radius * radius));
 }
 
-float Lights::total_importance(Vec3 position) const {
-    float total = 0;
-    for (size_t s = 0; s < source_count(); ++s) total += importance(s, position);
-    return total;
+Lights::Importances Lights::importances(Vec3 position) const {
+    float total = 0, count = 0;
+    for (size_t s = 0; s < source_count(); ++s) {
+        const float own = importance(s, position);
+        total += own;
+        count += own > 0 ? 1.0f : 0.0f;
+    }
+    const float each = count > 0 ? even_share / (1 - even_share) * total / count : 0;
+    return {each, total / (1 - even_share)};
 }
 
 std::optional<Lights::Choice> Lights::choose(Vec3 position, float u) const {
-    const float total = total_importance(position);
+    const auto [each, total] = importances(position);
     if (!(total > 0)) return {};
     Choice choice{0, 0, u * total};
     for (size_t s = 0; s < source_count(); ++s) {
         const float own = importance(s, position);
         if (own <= 0) continue;
         choice.source = s;
-        choice.probability = own;
-        if (choice.left < own) break;
-        choice.left -= own;
+        choice.probability = own + each;
+        if (choice.left < own + each) break;
+        choice.left -= own + each;
     }
     choice.left = std::min(choice.left / choice.probability, below_one);
     choice.probability /= total;
@@ -64,7 +69,9 @@ std::optional<Lights::Choice> Lights::choose(Vec3 position, float u) const {
 
 float Lights::choice_probability(size_t source, Vec3 position) const {
     const float own = importance(source, position);
-    return own > 0 ? own / total_importance(position) : 0;
+    if (own <= 0) return 0;
+    const auto [each, total] = importances(position);
+    return (own + each) / total;
 }
 
 std::optional<LightSample> Lights::sample(size_t source, Vec3 position, Vec3 normal, bool both_sides,

@@ -14,6 +14,10 @@
 
 namespace photon_maps {
 
+/// Share of choices among lights that does not ask how strong they are: a dim lamp may be all that lights a room beside
+/// which another one is bright, and what is hardly ever chosen is noise that no picture gets rid of.
+constexpr float even_share = 0.05f;
+
 enum class LightType : uint32_t { point = 0, sun = 1, spot = 2, rectangle = 3, ellipse = 4 };
 
 /// A lamp as Blender has it; it shines along its local -z.
@@ -56,7 +60,7 @@ class Lights {
         float left;  ///< what is left of the random number, uniform in [0, 1) again
     };
 
-    /// Chooses a source by the irradiance that it might bring to the point.
+    /// Chooses a source by the irradiance that it might bring to the point, a little also by how many might bring any.
     std::optional<Choice> choose(Vec3 position, float u) const;
 
     /// Probability with which choose() takes a source.
@@ -96,7 +100,11 @@ class Lights {
 
   private:
     float importance(size_t source, Vec3 position) const;
-    float total_importance(Vec3 position) const;
+    /// What choose() adds to the importance of each source that might bring anything, and the sum of all.
+    struct Importances {
+        float each, total;
+    };
+    Importances importances(Vec3 position) const;
     std::optional<LightSample> sample_world(Vec3 normal, bool both_sides, const RayState &receiver,
                                             const std::array<float, 3> &u) const;
 

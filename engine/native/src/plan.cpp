@@ -141,7 +141,7 @@ PilotPixels::PilotPixels(const Camera &camera, bool is_nested) : is_nested_(is_n
 void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
     const bool is_first_half = added_ < passes / 2;
     std::vector<RayCounts> counts(pixels_.size());
-    std::vector<float> caustics(pixels_.size());
+    std::vector<float> caustics(pixels_.size()), indirect(pixels_.size());
     parallel_for(pass.threads, pixels_.size(), cancel, [&](size_t i) {
         Pixel &pixel = pixels_[i];
         Levels levels;
@@ -149,6 +149,7 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
             render_pixel(pass, pixel.x, pixel.y, true, counts[i], is_nested_ ? &levels : nullptr);
         pixel.radiance[added_] = sample.radiance();
         caustics[i] = average(sample.caustic);
+        indirect[i] = average(sample.soft_indirect);
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
         pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
@@ -157,9 +158,8 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
         pixel.caustic_blur.add(sample.caustic_map.blur, is_first_half);
     });
     for (size_t i = 0; i < pixels_.size(); ++i) {
-        const double caustic = caustics[i];
-        caustic_sum_ += caustic;
-        caustic_squares_ += caustic * caustic;
+        caustics_.add(caustics[i]);
+        indirect_.add(indirect[i]);
         counts_ += counts[i];
     }
     ++added_;
@@ -205,20 +205,21 @@ double PilotPixels::pixel_cost() const {
     return per_pixel(counts_.rays) + estimate_cost * per_pixel(counts_.estimates);
 }
 
-double PilotPixels::hidden_caustic_variance(const PilotPixels &photons) const {
-    // How much of a pixel's radiance is caustics.
+double PilotPixels::hidden_variance(RareLight light, const PilotPixels &photons) const {
+    // How much of a pixel's radiance it is.
+    const Moments Pixel::*part = light == RareLight::caustics ? &Pixel::caustic : &Pixel::global;
     const std::vector<Vec3> means = photons.means();
     const float floor = squared_floor(means);
     double share = 0;
     for (size_t i = 0; i < pixels_.size(); ++i) {
-        const Vec3 mean = photons.pixels_[i].caustic.sum / static_cast<float>(passes);
+        const Vec3 mean = (photons.pixels_[i].*part).sum / static_cast<float>(passes);
         share += std::sqrt(relative_square(mean * mean, means[i], floor));
     }
     share /= static_cast<double>(pixels_.size());
 
-    // By how many samples that seems to come (Kish 1965), and at the least by how few: what comes with probability p
-    // has a variance of about its square over p.
-    const double came = caustic_squares_ > 0 ? caustic_sum_ * caustic_sum_ / caustic_squares_ : 0;
+    // By how few samples it comes at the least: what comes with probability p has a variance of about its square over
+    // p.
+    const double came = (light == RareLight::caustics ? caustics_ : indirect_).count();
     const double fewest = std::max(1.0, came - 2 * std::sqrt(came));
     return share * share * static_cast<double>(pixels_.size() * passes) / fewest;
 }

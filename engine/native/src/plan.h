@@ -58,6 +58,9 @@ struct Plan {
 /// @param shrinks whether radii shrink from pass to pass (shrunk_radius)
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks);
 
+/// Light that photons bring evenly, and paths sometimes by a few samples of many.
+enum class RareLight { caustics, indirect };
+
 /// Some pixels of the frame, followed over the pilot passes.
 class PilotPixels {
   public:
@@ -75,10 +78,10 @@ class PilotPixels {
     double pixel_cost() const;
     /// Light samples of a pixel in a pass at first diffuse vertices, on average.
     double light_samples() const { return per_pixel(counts_.light_samples); }
-    /// Most that the variance of a pass's caustics may be without it showing in the pilots, relative to squared
-    /// radiance: where few samples bring caustics, those that happened to come tell little of the others.
-    /// @param photons the same pixels with caustics by photons, which tell how much there is to come
-    double hidden_caustic_variance(const PilotPixels &photons) const;
+    /// Most that the variance of a pass's light of a kind may be without it showing in the pilots, relative to squared
+    /// radiance: where few samples bring such light, those that happened to come tell little of the others.
+    /// @param photons the same pixels with that light by photons, which tell how much there is to come
+    double hidden_variance(RareLight light, const PilotPixels &photons) const;
     /// Sets the variances and the blur that the passes tell, once all are added.
     void find_noise(PilotNoise &noise) const;
     /// Relative square of the light that the pixels lack on average but others have, as far as noise cannot be the
@@ -96,6 +99,17 @@ class PilotPixels {
             difference += is_of_first_half ? value : -value;
         }
     };
+    /// Samples of a kind of light.
+    struct Samples {
+        double sum = 0, squares = 0;
+
+        void add(double value) {
+            sum += value;
+            squares += value * value;
+        }
+        /// By how many samples the light seems to come (Kish 1965).
+        double count() const { return squares > 0 ? sum * sum / squares : 0; }
+    };
     struct Pixel {
         uint32_t x, y;  ///< in the frame
         Moments camera, direct, global, caustic, global_blur, caustic_blur;
@@ -111,7 +125,7 @@ class PilotPixels {
     bool is_nested_;
     uint32_t added_ = 0;
     RayCounts counts_;
-    double caustic_sum_ = 0, caustic_squares_ = 0;
+    Samples caustics_, indirect_;
 };
 
 /// A way to bring the light of diffuse bounces, and what pilot passes tell of it.

@@ -278,6 +278,7 @@ void Render::prepare(RenderStatistics &spent) {
         first_radii_.reset();
         throw;
     }
+    kernel_bounds_ = {};
     if (film_.nested() && !is_nested()) film_ = Film(view_.width, view_.height, settings_.buffers, is_nested());
 }
 

@@ -145,7 +145,8 @@ class Render {
     uint32_t light_samples_;
     PhotonCounts counts_;
     PilotNoise pilot_noise_;
-    std::optional<Radii> first_radii_;  ///< of pass 0, once chosen
+    std::vector<FeatureEdge> kernel_bounds_;  ///< of the scene, while radii are chosen
+    std::optional<Radii> first_radii_;        ///< of pass 0, once chosen
     std::shared_ptr<const EdgeIndex> edges_ = std::make_shared<EdgeIndex>();
     std::shared_ptr<const Coverage> coverage_;  ///< made along with the first radii, if there is a map
     Film film_;

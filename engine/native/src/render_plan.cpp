@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a render decides before its first pass: the radii, and the photons of a pass.
+#include "crossing_edges.h"
 #include "parallel.h"
 #include "radius.h"
 #include "render.h"
@@ -38,6 +39,14 @@ void Render::choose_radii() {
     if (is_chosen && is_nested()) radii.caustic *= largest_nested;
     if (is_planned()) radii.indirect *= pilot_radius;
 
+    // What bounds kernels. Of crossings in finer meshes there would be more than a kernel can bear, and more rays to
+    // find them than they are worth.
+    constexpr float shortest_crossing = 0.25f;
+    const float largest = std::max(radii.indirect, radii.caustic);
+    if (largest > 0) {
+        kernel_bounds_ = find_crossing_edges(scene_, shortest_crossing * largest, settings_.threads, &cancel_);
+        kernel_bounds_.insert(kernel_bounds_.end(), scene_.feature_edges().begin(), scene_.feature_edges().end());
+    }
     set_radii(radii);
 }
 
@@ -48,15 +57,14 @@ void Render::set_radii(Radii radii) {
     Kernel largest = settings_.kernel;
     largest.radius = std::max(radii.indirect, radii.caustic);
     if (largest.radius > 0) {
-        const std::span<const FeatureEdge> edges = scene_.feature_edges();
-        auto index = std::make_shared<EdgeIndex>(std::vector<FeatureEdge>(edges.begin(), edges.end()), largest.radius);
+        auto index = std::make_shared<EdgeIndex>(kernel_bounds_, largest.radius);
         constexpr double bearable_crowding = 1024;
         constexpr int most_halvings = 12;
         for (int halving = 0; is_chosen && index->crowding() > bearable_crowding && halving < most_halvings;
              ++halving) {
             throw_if_cancelled(&cancel_);
             largest.radius /= 2;
-            *index = EdgeIndex({edges.begin(), edges.end()}, largest.radius);
+            *index = EdgeIndex(kernel_bounds_, largest.radius);
         }
         edges_ = std::move(index);
         coverage_ = std::make_shared<Coverage>(scene_, *edges_, largest);
@@ -108,8 +116,11 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
         noise.pixel_cost = frame * pilot.pixels.pixel_cost();
         noise.light_cost = frame * light_sample_cost * pilot.pixels.light_samples();
         if (settings_.light_samples > 0) noise.direct_variance = 0;  // they are not for the plan to choose
+        if (pilot.indirect >= Indirect::paths)
+            noise.camera_variance = std::max(noise.camera_variance,
+                                             pilot.pixels.hidden_variance(RareLight::indirect, pilots.front().pixels));
         if (pilot.indirect == Indirect::all_paths) {
-            noise.camera_variance += pilot.pixels.hidden_caustic_variance(pilots.front().pixels);
+            noise.camera_variance += pilot.pixels.hidden_variance(RareLight::caustics, pilots.front().pixels);
         } else if (first_radii_->caustic > 0) {
             noise.caustic.count = static_cast<double>(counts_.caustic);
             noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
