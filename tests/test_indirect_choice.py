@@ -107,8 +107,8 @@ def test_paths_bring_the_light_of_diffuse_bounces(by_paths: Picture) -> None:
 
 
 def test_caustics_are_still_the_photons(by_paths: Picture) -> None:
-    # By kernels as wide, so that both are blurred alike.
-    radius = by_paths.render.statistics().caustic_radius_first
-    by_photons = Picture(full_field(), box_filtered(photon_count=1 << 16, radius=radius, use_indirect=False)).run(64)
+    # By kernels that are chosen from as wide ones, so that both are blurred alike.
+    kernels = {"radius": by_paths.render.statistics().caustic_radius_first, "estimate": Estimate.ADAPTIVE}
+    by_photons = Picture(full_field(), box_filtered(photon_count=1 << 16, use_indirect=False, **kernels)).run(64)
     caustic, expected = (picture.pixels(Pass.CAUSTIC).mean() for picture in (by_paths, by_photons))
     assert caustic == pytest.approx(expected, rel=0.02)
