@@ -30,7 +30,10 @@ EMBREEX_TAG_windows-x64 := win_amd64
 EMBREEX_TAG_macos-arm64 := macosx_13_0_arm64
 EMBREEX_TAG_macos-x64 := macosx_13_0_x86_64
 native_wheel = wheels/photon_maps_native-$(VERSION)-py3-none-$(TAG_$(1)).whl
-embreex_wheels = $(foreach python,cp311 cp313,$(EMBREEX)-$(python)-$(python)-$(EMBREEX_TAG_$(1)).whl)
+# The Pythons of official Blenders; on Linux also the one with which distributions build Blender 5.2.
+PYTHONS = 3.11 3.13 $(if $(filter linux-%,$(1)),3.14)
+cpython = cp$(subst .,,$(1))
+embreex_wheels = $(foreach python,$(PYTHONS),$(EMBREEX)-$(call cpython,$(python))-$(call cpython,$(python))-$(EMBREEX_TAG_$(1)).whl)
 EMBREEX_WHEELS := $(call embreex_wheels,linux-x64)
 
 # Folders are among the sources, so that a file that went away counts as a change.
@@ -52,8 +55,9 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart limits prediction calibration sweep package test test-native test-python test-gui \
-    test-versions test-wine test-campaign lint format bench clean
+.PHONY: help demo beside seed chart limits prediction calibration sweep package package-twice \
+    $(PLATFORMS:%=package-twice-%) test built-checks test-native test-python test-gui test-versions test-first-render \
+    test-wine test-campaign lint format bench docs clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -62,6 +66,7 @@ help:
 	@echo 'make test-gui  the rendered viewport in the window of a real Blender, 1.3 GB in build the first time; needs root'
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make test-versions   the package in every Blender from 4.2 to 5.2 that is a Python module, 1.4 GB the first time'
+	@echo 'make test-first-render   install and F12 in the oldest Blender, the newest, and 5.0'
 	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
 	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
@@ -73,6 +78,8 @@ help:
 	@echo 'make limits    how and how badly the method fails, 15 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender on Linux, Windows and macOS, in dist'
+	@echo 'make docs      all pages as one site in build/docs, links checked'
+	@echo 'make package-twice    the helpers built again in another folder: the same bytes'
 	@echo 'make format    bring all sources into the project style'
 	@echo 'make clean     remove build, dist and wheels; .venv stays'
 
@@ -101,6 +108,10 @@ help:
 	$(PIP) install -r requirements/chart.txt
 	@touch $@
 
+.venv/docs.stamp: requirements/docs.txt .venv/build.stamp
+	$(PIP) install -r requirements/docs.txt
+	@touch $@
+
 # Without what they ask for but do not need here: CUDA, and another version of what there is.
 .venv/peers.stamp: requirements/peers.txt .venv/build.stamp
 	$(PIP) install --no-deps -r requirements/peers.txt
@@ -120,10 +131,16 @@ $(NATIVE_WHEEL): $(NATIVE_SOURCES) .venv/build.stamp
 	    -C build-dir=$(CURDIR)/build/cmake/release -w wheels ./engine/native
 	@touch $@
 
+# Builds the native wheel of a platform; from a folder, in a folder, into a folder.
+build_native = $(PIP) wheel --no-build-isolation --no-deps --no-index \
+    -C build-dir=$(CURDIR)/$(3) -C wheel.tags=py3-none-$(TAG_$(1)) \
+    -C cmake.define.CMAKE_TOOLCHAIN_FILE=$(CURDIR)/$(2)/zig.cmake \
+    -C cmake.define.ZIG_COMPILER=$(ZIG) -C cmake.define.ZIG_TARGET=$(TARGET_$(1)) -w $(4) ./$(2)
+
 # How each platform gets its wheels, and the package of them.
 define platform_rules
 $(call embreex_wheels,$(1)) &: requirements/bundled.txt | .venv/build.stamp
-	@for version in 3.11 3.13; do \
+	@for version in $(PYTHONS); do \
 	    $(PIP) download --no-deps --require-hashes --only-binary :all: --python-version $$$$version \
 	        --platform $(lastword $(subst ., ,$(EMBREEX_TAG_$(1)))) --dest wheels -r requirements/bundled.txt || exit 1; \
 	done
@@ -131,11 +148,16 @@ $(call embreex_wheels,$(1)) &: requirements/bundled.txt | .venv/build.stamp
 
 $(call native_wheel,$(1)): $(NATIVE_SOURCES) .venv/package.stamp
 	@mkdir -p build wheels
-	$(PIP) wheel --no-build-isolation --no-deps --no-index \
-	    -C build-dir=$(CURDIR)/build/cmake/$(1) -C wheel.tags=py3-none-$(TAG_$(1)) \
-	    -C cmake.define.CMAKE_TOOLCHAIN_FILE=$(CURDIR)/engine/native/zig.cmake \
-	    -C cmake.define.ZIG_COMPILER=$(ZIG) -C cmake.define.ZIG_TARGET=$(TARGET_$(1)) -w wheels ./engine/native
+	$(call build_native,$(1),engine/native,build/cmake/$(1),wheels)
 	@touch $$@
+
+# In another folder, the same bytes.
+package-twice-$(1): $(call native_wheel,$(1))
+	@rm -rf build/twice/$(1)
+	@mkdir -p build/twice/$(1)
+	@cp -r engine/native build/twice/$(1)/source
+	$(call build_native,$(1),build/twice/$(1)/source,build/twice/$(1)/cmake,build/twice/$(1))
+	cmp build/twice/$(1)/$(notdir $(call native_wheel,$(1))) $(call native_wheel,$(1))
 
 dist/photon_maps-$(VERSION)-$(1).zip: $(call native_wheel,$(1)) $(call embreex_wheels,$(1)) $(EXTENSION_SOURCES) \
     tools/package.py | .venv/build.stamp
@@ -154,6 +176,8 @@ build/native/stamp: $(NATIVE_WHEEL) $(firstword $(EMBREEX_WHEELS))
 
 package: $(PACKAGES)
 	@echo 'Install one in Blender by Edit > Preferences > Get Extensions > Install from Disk.'
+
+package-twice: $(PLATFORMS:%=package-twice-%)
 
 $(ZIP): $(NATIVE_WHEEL) $(EMBREEX_WHEELS) $(EXTENSION_SOURCES) tools/package.py | .venv/build.stamp
 	$(PYTHON) tools/package.py --platform linux-x64 --native $(NATIVE_WHEEL) --output $@
@@ -196,7 +220,16 @@ limits: build/native/stamp .venv/chart.stamp .venv/test.stamp
 
 # --- Checks ---
 
-test: lint test-native test-python
+CTEST = ctest --test-dir build/cmake/$(1) --parallel $(JOBS) --output-on-failure --no-tests=error
+WITHOUT_BLENDER := --ignore=tests/blender --ignore=tests/gui --ignore=tests/versions --ignore=tests/platforms
+PYTEST := timeout 1500 $(PYTHON) -m pytest tests $(WITHOUT_BLENDER) --numprocesses 2 --dist loadfile
+# There without build/native: the wheels are the zip's.
+PYTEST_IN_BLENDER := timeout 1500 $(PYTHON) -m pytest tests/blender -o pythonpath=.
+TEST_PYTHON_NEEDS := .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
+
+# The parts of test-native and test-python, side by side: most of them keep one core busy.
+test: lint built-checks $(TEST_PYTHON_NEEDS)
+	@bash tools/side_by_side.sh '$(call CTEST,release) && $(PYTEST)' '$(PYTEST_IN_BLENDER)' '$(call CTEST,sanitize)'
 
 lint: .venv/test.stamp
 	.venv/bin/ruff check $(wildcard $(PYTHON_FOLDERS))
@@ -210,24 +243,18 @@ format: .venv/test.stamp
 	@.venv/bin/clang-format -i $(CXX_SOURCES)
 
 # The release build is the one the wheel was made from.
-test-native: build/native/stamp
+built-checks: build/native/stamp
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
 	cmake -S engine/native -B build/cmake/sanitize -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
 	    -DPHOTON_MAPS_SANITIZE=ON -DCMAKE_CXX_FLAGS_RELEASE=-O1
-	@for kind in release sanitize; do \
-	    cmake --build build/cmake/$$kind && \
-	    ctest --test-dir build/cmake/$$kind --parallel $(JOBS) --output-on-failure --no-tests=error || exit 1; \
-	done
+	@for kind in release sanitize; do cmake --build build/cmake/$$kind || exit 1; done
 
-WITHOUT_BLENDER := --ignore=tests/blender --ignore=tests/gui --ignore=tests/versions --ignore=tests/platforms
+test-native: built-checks
+	@$(call CTEST,release)
+	@$(call CTEST,sanitize)
 
-test-python: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
-	@# Side by side: those in Blender use one core most of the time. There without build/native: the wheels are the zip's.
-	@mkdir -p build
-	@timeout 900 $(PYTHON) -m pytest tests/blender -o pythonpath=. \
-	    > build/tests_blender.log 2>&1 & blender=$$!; \
-	timeout 900 $(PYTHON) -m pytest tests $(WITHOUT_BLENDER); native=$$?; \
-	wait $$blender; in_blender=$$?; cat build/tests_blender.log; exit $$((native + in_blender))
+test-python: $(TEST_PYTHON_NEEDS)
+	@bash tools/side_by_side.sh '$(PYTEST)' '$(PYTEST_IN_BLENDER)'
 
 # BLENDER_ROOT: a folder that holds another Blender, made by `bash tests/gui/blender.sh FOLDER sid`.
 test-gui: .venv/test.stamp dist/photon_maps-$(VERSION)-linux-x64.zip
@@ -250,7 +277,11 @@ build/versions/%/stamp: requirements/blender_%.txt tools/find_python.sh
 
 test-versions: .venv/test.stamp .venv/system.stamp dist/photon_maps-$(VERSION)-linux-x64.zip \
     $(VERSIONS:%=build/versions/%/stamp)
-	$(PYTHON) -m pytest tests/versions -o pythonpath=.
+	$(PYTHON) -m pytest tests/versions/test_versions.py -o pythonpath=.
+
+# What of it costs a minute or two: the package of this machine's compiler in the oldest Blender and the newest.
+test-first-render: $(TEST_PYTHON_NEEDS) build/versions/4.2.23/stamp build/versions/5.2.3/stamp
+	$(PYTHON) -m pytest tests/versions/test_first_render.py -o pythonpath=.
 
 # The program that repeats recorded calls, for the oldest processors of each platform.
 REPLAY_SOURCES := engine/native/replay/replay.cpp engine/native/src/dynamic_library.cpp
@@ -288,6 +319,14 @@ bench: build/native/stamp .venv/system.stamp
 	@for script in export viewport; do \
 	    echo "== $${script}_bench"; PYTHONPATH=.:build/native $(PYTHON) benchmarks/$${script}_bench.py || exit 1; \
 	done
+
+# What warns, such as a link that leads nowhere, fails; so does what a reader would fetch from elsewhere.
+docs: .venv/docs.stamp
+	@rm -rf build/docs
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict
+	@! grep -rlE '<(script|link|img)[^>]* (src|href)="?http' build/docs --include='*.html' || \
+	    { echo 'These pages fetch something from the network.' >&2; exit 1; }
+	@echo 'The site is build/docs/index.html.'
 
 clean:
 	rm -rf build dist wheels

@@ -11,7 +11,7 @@ from photon_maps_native import LightType, Material, Mesh, SceneData, diffuse, em
 
 from engine.map_choice import explain_maps, maps_built
 from engine.passes import Pass
-from engine.settings import AUTOMATIC, Indirect, Integrator
+from engine.settings import AUTOMATIC, Estimate, Indirect, Integrator
 from tests.reference_scenes import CORNELL
 from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
 from tests.surfaces import material, metal, mirror

@@ -22,12 +22,28 @@ def kept(extension, scene):
     return extension.engine.last_chart.recall(scene.session_uid)
 
 
+@pytest.fixture(scope="module")
+def charts():
+    """The charts that were made so far."""
+    return []
+
+
 @pytest.fixture
-def charted(corner, extension):
+def charted(corner, extension, charts):
     """The corner's chart."""
     corner.photon_maps.passes = 32
     assert bpy.ops.photon_maps.chart_speed_accuracy(seconds=SECONDS) == {"FINISHED"}
-    return kept(extension, corner)
+    charts.append(kept(extension, corner))
+    return charts[-1]
+
+
+@pytest.fixture
+def charted_before(request, corner, extension, charts):
+    """The corner's chart, kept from another test where there was one: the corner is always the same."""
+    if not charts:
+        return request.getfixturevalue("charted")
+    extension.engine.last_chart.remember(corner.session_uid, charts[-1])
+    return charts[-1]
 
 
 def test_chart_of_a_corner(corner, extension, charted):
@@ -70,10 +86,10 @@ def test_chart_of_a_corner(corner, extension, charted):
     assert [button.index for button in offered] == list(range(points))
 
 
-def test_a_point_is_taken_over(corner, extension, charted):
+def test_a_point_is_taken_over(corner, extension, charted_before):
     from bl_ext.user_default.photon_maps.engine.chart.outcome import choices
 
-    settings, points = corner.photon_maps, choices(charted)
+    settings, points = corner.photon_maps, choices(charted_before)
 
     def take(name):
         index = next(i for i, choice in enumerate(points) if choice.row.variant.name == name)

@@ -94,7 +94,7 @@ class Recorder:
         pointers, start = [], 0
         for one in structures:
             for name, kind in one._fields_:
-                if kind is ctypes.c_void_p or isinstance(kind, POINTER):
+                if isinstance(kind, POINTER):
                     block = self._pointed_at(one, name, kind)
                     if block is not None:
                         pointers.append((start + getattr(type(one), name).offset, block))
@@ -105,8 +105,6 @@ class Recorder:
         value = getattr(owner, name)
         if not value:
             return None
-        if kind is ctypes.c_void_p:
-            return self._block(ctypes.string_at(value, self._sizes[value]), [])
         if issubclass(kind._type_, ctypes.Structure):
             assert name == "attributes"
             return self._structures([value[i] for i in range(owner.attribute_count)])
@@ -118,7 +116,7 @@ class Recorder:
 def recorded(monkeypatch: Any) -> Any:
     """Record all that is asked of the helper meanwhile."""
     recorder = Recorder()
-    call, close, address = library.call, library.Handle.close, convert.Address.__init__
+    call, close, first = library.call, library.Handle.close, convert._first
 
     def note_call(name: str, *arguments: Any) -> None:
         call(name, *arguments)
@@ -129,12 +127,12 @@ def recorded(monkeypatch: Any) -> Any:
             recorder.note_call(handle.release, (handle.handle,))
         close(handle)
 
-    def note_array(self: convert.Address, array: np.ndarray) -> None:
-        address(self, array)
+    def note_array(array: np.ndarray, kind: type) -> Any:
         recorder.note_array(array)
+        return first(array, kind)
 
     with monkeypatch.context() as patch:
         patch.setattr(library, "call", note_call)
         patch.setattr(library.Handle, "close", note_close)
-        patch.setattr(convert.Address, "__init__", note_array)
+        patch.setattr(convert, "_first", note_array)
         yield recorder

@@ -8,7 +8,7 @@ namespace photon_maps {
 #if defined(__x86_64__)
 /// Whether it has what the library is compiled for (x86-64-v2: SSE4.2 and POPCNT).
 extern const bool has_baseline;
-/// Whether it has AVX2, and the operating system keeps the registers of it.
+/// Whether it has AVX2, the operating system keeps the registers of it, and PHOTON_MAPS_WITHOUT_AVX2 is not set.
 extern const bool has_avx2;
 #endif
 
