@@ -4,7 +4,7 @@
 import sys
 
 from .engine import overlay_properties, properties, render_engine
-from .operators import chart, denoising, messages, presets, search_disc
+from .operators import add_demo, chart, denoising, messages, presets, search_disc
 from .ui import (
     chart_panel,
     compatibility,
@@ -14,6 +14,7 @@ from .ui import (
     panels,
     photon_overlay,
     refresh,
+    view_panels,
 )
 
 # Blender forgets the modules of an extension that it updates, but not those of the wheels: an older helper would stay.
@@ -24,8 +25,9 @@ for name in [name for name in sys.modules if name.partition(".")[0] == "photon_m
 #: In the order of registration; each has register() and unregister().
 MODULES = (
     *(properties, overlay_properties, render_engine),
-    *(chart, denoising, messages, presets, search_disc),
-    *(panels, messages_panel, chart_panel, data_panels, overlay_panels, compatibility, photon_overlay, refresh),
+    *(add_demo, chart, denoising, messages, presets, search_disc),
+    *(panels, messages_panel, chart_panel, data_panels, overlay_panels, view_panels, compatibility),
+    *(photon_overlay, refresh),
 )
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a first picture in the viewport costs after loading a scene, and after the camera moved: three scenes."""
+"""What a first picture in the viewport costs after loading a scene, after the camera moved, and after an edit: three
+scenes."""
 
 from __future__ import annotations
 
@@ -13,7 +14,9 @@ import numpy as np
 from mathutils import Matrix
 
 from engine import properties, render_engine
+from engine.changes import Changes
 from engine.export.camera import read_camera
+from engine.export.kept import Kept
 from engine.export.scene import read_contents
 from engine.messages import Messages
 from engine.user_settings import render_settings
@@ -62,11 +65,12 @@ def measure(build: Callable[[], bpy.types.Scene]) -> None:
     scene.render.resolution_percentage = 100
     settings = replace(render_settings(scene), passes=10_000)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    worker = ViewportWorker()
+    worker, kept = ViewportWorker(), Kept()
     requests = []
 
     def load() -> None:
-        data = read_contents(depsgraph, Messages())
+        kept.begin(Changes(is_seen=True, is_all=True))
+        data = read_contents(depsgraph, Messages(), kept=kept)
         camera = read_camera(scene.camera.evaluated_get(depsgraph), depsgraph, Messages())
         requests.append(Request(data, settings, camera))
         worker.show(requests[0])
@@ -93,7 +97,22 @@ def measure(build: Callable[[], bpy.types.Scene]) -> None:
     share = cost.cpu_seconds / loaded.cpu_seconds
     pixels = SIZE[0] / worker.picture.pixels.shape[1]
     fine = measured(lambda: wait(worker, is_fine))
+    before = worker.picture
+
+    def edit() -> None:
+        """Another colour of every lamp, as a user's edit is read: meshes and images are kept."""
+        for lamp in bpy.data.lights:
+            lamp.color = [0.5 * channel for channel in lamp.color]
+        bpy.context.view_layer.update()
+        kept.begin(Changes(is_seen=True))
+        data = read_contents(bpy.context.evaluated_depsgraph_get(), Messages(), kept=kept)
+        worker.show(replace(requests[0], scene=data))
+        wait(worker, lambda picture: picture is not before and picture.status.startswith("First look"))
+
+    edited = measured(edit)
+    whole = measured(lambda: wait(worker, lambda picture: is_fine(picture) and picture.status.startswith("Pass 1")))
     print(f"{build.__name__:12} {loaded} | {cost} (1 of {pixels:.0f} x {pixels:.0f} pixels) | {share:.3f} | + {fine}")
+    print(f"{'':12} after an edit {edited} | the first whole pass + {whole}")
     worker.close()
     worker.wait()
 

@@ -99,8 +99,8 @@ def _render_layer(
         return (), None
     settings = render_settings(depsgraph.scene_eval)
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
-        picture = _Picture(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
-        _step_until_done(engine, session, picture)
+        picture = RenderResult(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
+        step_until_done(engine, session, picture)
         if depsgraph.scene.photon_maps_overlay.show:
             _keep_photons(engine, session, scene, depsgraph, messages)
         statistics = session.statistics()
@@ -128,7 +128,7 @@ def _say_what_was_missed(scene: str, settings: RenderSettings, statistics: Stati
     )
 
 
-class _Picture:
+class RenderResult:
     """Blender's render result of one view layer."""
 
     def __init__(
@@ -160,7 +160,7 @@ class _Picture:
             self._engine.end_result(result)
 
 
-def _step_until_done(engine: bpy.types.RenderEngine, session: Session, picture: _Picture) -> None:
+def step_until_done(engine: bpy.types.RenderEngine, session: Session, picture: RenderResult) -> None:
     """Render pass after pass in a thread of its own, while this one watches for Esc and shows the picture."""
     started = time.monotonic()
     engine.update_stats("", "First pass")

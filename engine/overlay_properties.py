@@ -7,6 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from . import last_photons
+from .windows import redraw_photons
 
 #: Identifier, name, description and the number that is saved; as photon_look.ColorBy has them.
 COLORS = [
@@ -24,22 +25,14 @@ KINDS = [
 ]
 
 
-def redraw_views(context: bpy.types.Context) -> None:
-    """Have all 3D views drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "PROPERTIES"}:
-                area.tag_redraw()
-
-
 def _switched(settings: PhotonMapsOverlaySettings, context: bpy.types.Context) -> None:
     if not settings.show:
         last_photons.forget(settings.id_data.session_uid)
-    redraw_views(context)
+    redraw_photons()
 
 
 def _changed(settings: PhotonMapsOverlaySettings, context: bpy.types.Context) -> None:
-    redraw_views(context)
+    redraw_photons()
 
 
 class PhotonMapsOverlaySettings(bpy.types.PropertyGroup):

@@ -96,7 +96,7 @@ def look_at(photons: LastPhotons, look: Look) -> Points:
     kept = {kind: _within(rows.photons.bounces, look) for kind, rows in told.items()}
     colors, legend = _colors(photons, told, kept, look)
     positions = [_lifted(rows, kept[kind]) for kind, rows in told.items()]
-    lines = [_lines(photons, kind, rows, kept[kind], look) for kind, rows in told.items()]
+    lines = [_lines(photons, is_caustic, told, kept, look) for is_caustic in (False, True)]
     count = sum(map(len, positions))
     return Points(
         _joined(positions, 3),
@@ -183,16 +183,22 @@ def _category_colors(categories: list[np.ndarray], name: object) -> tuple[list[n
 
 
 def _lines(
-    photons: LastPhotons, kind: PhotonKind, told: TracedPhotons, kept: np.ndarray, look: Look
+    photons: LastPhotons,
+    is_caustic: bool,
+    told: dict[PhotonKind, TracedPhotons],
+    kept: dict[PhotonKind, np.ndarray],
+    look: Look,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ways of some of the photons that are shown, each to where it ends."""
+    """Return the ways of some of the photons of a map that are shown, each once, and to where it ends."""
     nothing = np.empty((0, 3), np.float32), np.empty((0, 4), np.float32)
-    if look.path_count == 0 or kind == PhotonKind.SHADOW:
+    if look.path_count == 0:
         return nothing
-    numbers, first = np.unique(told.numbers[kept], return_index=True)
-    chosen = numbers[np.argsort(first)][: look.path_count]
+    # One that was stored straight from its light and again after a bounce goes one way.
+    kinds = told.keys() & ({PhotonKind.CAUSTIC} if is_caustic else {PhotonKind.DIRECT, PhotonKind.INDIRECT})
+    shown = [told[kind].numbers[kept[kind]] for kind in kinds]
+    chosen = np.unique(np.concatenate([np.empty(0, np.uint32), *shown]))[: look.path_count]
     if not len(chosen):
         return nothing
-    ways = photons.snapshot.segments(kind == PhotonKind.CAUSTIC, chosen)
+    ways = photons.snapshot.segments(is_caustic, chosen)
     ends = np.stack([ways.starts, ways.ends], axis=1).reshape(-1, 3)
     return ends, np.repeat(_flux_color(ways.flux, max(float(ways.flux.max()), 1e-30)), 2, axis=0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import final_render, last_render, viewport_render
+from . import final_render, last_render, preview_render, viewport_render
 
 
 class PhotonMapsEngine(bpy.types.RenderEngine):
@@ -13,7 +13,7 @@ class PhotonMapsEngine(bpy.types.RenderEngine):
 
     bl_idname = "PHOTON_MAPS"
     bl_label = "Photon Maps"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_eevee_viewport = True  # Material Preview shows the nodes with EEVEE, as it does for Cycles
     bl_use_shading_nodes_custom = False  # Cycles' nodes are what is read
 
@@ -21,6 +21,9 @@ class PhotonMapsEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)  # Blender 4.4 and later construct it with arguments of their own
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        if self.is_preview:
+            preview_render.render(self, depsgraph)
+            return
         with viewport_render.paused():
             final_render.render(self, depsgraph)
 

@@ -36,6 +36,9 @@ SHOWN_TYPES = (
 )
 
 
+LIGHTING = ("use_scene_lights_render", "use_scene_world_render", "studiolight_intensity")
+
+
 def of(engine: bpy.types.RenderEngine) -> Viewport:
     """Return what an engine shows in its viewport; a new one if it shows nothing yet."""
     if not hasattr(engine, "viewport"):
@@ -86,6 +89,7 @@ class Viewport:
     def _read(self, space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph) -> None:
         from .export.scene import read_contents
         from .export.view import reach_of
+        from .export.view_light import lit_as_shown
 
         changes, shown = find_changes(depsgraph.updates), _filter(space)
         if self._scene is not None and not changes.is_seen and shown == self._filter:
@@ -93,6 +97,7 @@ class Viewport:
         messages = Messages()
         self._kept.begin(changes)
         scene = read_contents(depsgraph, messages, viewport=space, kept=self._kept)
+        scene = lit_as_shown(scene, space.shading, depsgraph.scene.name, messages)
         self._filter = shown
         if not equal(scene, self._scene):
             self._scene, self._reach = scene, reach_of(scene)
@@ -125,7 +130,8 @@ class Viewport:
         self._settings = render_settings(depsgraph.scene)  # not the evaluated ones: changing them evaluates nothing
         if self._camera is not None:
             wants_photons = depsgraph.scene.photon_maps_overlay.show
-            self._worker.show(Request(self._scene, self._settings, self._camera, wants_photons))
+            pixel_size = self._engine().get_preview_pixel_size(depsgraph.scene)
+            self._worker.show(Request(self._scene, self._settings, self._camera, wants_photons, pixel_size))
 
     def _keep_photons(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Keep new photons for the overlay of all views."""
@@ -186,9 +192,10 @@ def cropped(picture: tuple[float, ...], shown: tuple[float, ...]) -> tuple[list,
 
 
 def _filter(space: bpy.types.SpaceView3D) -> tuple:
-    """Return what decides which objects a viewport shows, besides the scene."""
+    """Return what decides which objects and lights a viewport shows, besides the scene."""
     types = (getattr(space, f"show_object_viewport_{name}", True) for name in SHOWN_TYPES)
-    return space.local_view is not None, space.use_local_collections, *types
+    light = (getattr(space.shading, name) for name in LIGHTING)
+    return space.local_view is not None, space.use_local_collections, *types, *light
 
 
 @contextmanager

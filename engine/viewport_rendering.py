@@ -12,19 +12,23 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from photon_maps_native import Camera, SceneData
+from photon_maps_native import Camera, NativeError, SceneData
 from photon_maps_native.shader import Input, Op
 
 from .last_photons import LastPhotons, photons_of
 from .passes import Pass
 from .session import LoadedScene, Session
-from .settings import RenderSettings
+from .settings import Integrator, RenderSettings
 
 COARSE_SECONDS = 0.1  #: that a first picture should take, once there are photon maps
 FINE_SECONDS = 1.0  #: that the step to all pixels may take; before longer ones there are pictures in between
-COARSEST, USUAL = 16, 8  #: pixels of the view across one of a first picture: at most, and while the cost is not known
+COARSEST, USUAL = (
+    16,
+    8,
+)  #: pixels of the finest picture across one of a first picture: at most, and while the cost is not known
 SHOW_SECONDS = 0.25  #: between two pictures of the same view
 MAP_BYTES = 256 << 20  #: of photon maps that are kept for other views
+LOOK_PHOTONS = 1 << 15  #: of a first look at an edit, for each map
 VIEW_INPUTS = {Input.CAMERA_POSITION, Input.WINDOW}
 
 
@@ -36,10 +40,20 @@ class Request:
     settings: RenderSettings
     camera: Camera
     wants_photons: bool = False  #: so that they can be looked at one by one
+    pixel_size: int = 1  #: pixels of the view across one of the finest picture
 
     def shows_scene_of(self, other: Request | None) -> bool:
         """Say whether only the camera differs, if anything."""
         return other is not None and self.scene is other.scene and self.settings == other.settings
+
+    def shows_view_of(self, other: Request | None) -> bool:
+        """Say whether the picture is the same."""
+        is_same_scene = self.shows_scene_of(other)
+        return is_same_scene and self.camera is other.camera and self.pixel_size == other.pixel_size
+
+    def seen(self, factor: int) -> Camera:
+        """Return the camera of a picture that is coarser than the finest by a factor."""
+        return coarse_camera(self.camera, factor * self.pixel_size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +71,17 @@ class Rendering:
     def __init__(self, load: Callable, start: Callable) -> None:
         self._load, self._start = load, start
         self.request: Request | None = None
-        self.session: Session | None = None
+        self.session: Session | None = None  #: that renders the next pass: one of the next two
+        self._whole: Session | None = None
+        self._look: Session | None = None  #: a first one at an edit, until the whole one has photon maps
         self.is_coarse_due = True
         self._loaded: LoadedScene | None = None
         self._sees_view = self._has_failed = False
-        self._factor = 1  #: pixels of the view across one of the picture
+        self._factor = 1  #: pixels of the finest picture across one of the picture
         self._pixel_seconds = math.inf  #: that a pixel of a pass takes
         self._shown = -math.inf  #: when
         self.photons: LastPhotons | None = None  #: of the session's first pass, or of its last
+        self._photons_failure = ""  #: why there are none, though they are wanted
 
     @property
     def is_done(self) -> bool:
@@ -73,13 +90,19 @@ class Rendering:
     @property
     def _is_picture_done(self) -> bool:
         return (
-            self.session is not None and not self.is_coarse_due and self._factor == 1 and self.session.progress >= 1.0
+            self.session is not None
+            and not self.is_coarse_due
+            and self._look is None
+            and self._factor == 1
+            and self.session.progress >= 1.0
         )
 
     @property
     def _are_photons_due(self) -> bool:
         """Say whether to take the photons: once for a first look, and those of the last pass; pictures come first."""
-        if not self.request.wants_photons or self.is_coarse_due or self.session.last_pass is None:
+        if not self.request.wants_photons or self._photons_failure:
+            return False
+        if self.is_coarse_due or self._look is not None or self.session.last_pass is None:
             return False
         taken = self.photons
         return taken is None or (self._is_picture_done and taken.pass_index != self.session.last_pass)
@@ -87,20 +110,45 @@ class Rendering:
     def follow(self, request: Request) -> None:
         """Begin what a request asks for, unless it is under way."""
         before, self.request = self.request, request
-        if before is request:
-            return
+        if before is not request:
+            self._follow_change(before, request)
+        self.session = self._look if self._look is not None and self.is_coarse_due else self._whole
+
+    def _follow_change(self, before: Request | None, request: Request) -> None:
         if not request.wants_photons:
-            self.photons = None
-        if self.session is not None and request.shows_scene_of(before) and request.camera is before.camera:
+            self.photons, self._photons_failure = None, ""
+        if self.session is not None and request.shows_view_of(before):
             return
         # Shaders that ask for the view see that of a scene's first picture.
-        if self.session is None or self._sees_view or not request.shows_scene_of(before):
-            self.close()
-            self._has_failed = False
-            self._sees_view = depends_on_view(request.scene)
-            self._loaded = self._load(request.scene)
-            self.session = self._start(self._loaded, request.settings, camera=request.camera, map_bytes=MAP_BYTES)
+        if self._loaded is None or self._sees_view or request.scene is not before.scene:
+            self._load_scene(request.scene)
+        if self._whole is None or not request.shows_scene_of(before):
+            self._begin(request, is_edit=before is not None)
         self.is_coarse_due = True
+
+    def _load_scene(self, scene: SceneData) -> None:
+        self.close()
+        self._sees_view = depends_on_view(scene)
+        self._loaded = self._load(scene)
+
+    def _begin(self, request: Request, is_edit: bool) -> None:
+        self._end_sessions()
+        self._has_failed = False
+
+        def start(settings: RenderSettings) -> Session:
+            return self._start(self._loaded, settings, camera=request.camera, map_bytes=MAP_BYTES)
+
+        self._whole = start(request.settings)
+        look = look_settings(request.settings)
+        if is_edit and look is not None:
+            self._look = start(look)
+
+    def _end_sessions(self) -> None:
+        for session in (self._look, self._whole):
+            if session is not None:
+                session.close()
+        self.session = self._whole = self._look = self.photons = None
+        self._photons_failure = ""
 
     def step(self) -> bool:
         """Render a pass, or take the photons of the last one.
@@ -112,19 +160,26 @@ class Rendering:
         if self._is_picture_done:  # photons are no longer wanted
             return True
         factor = self._coarse_factor() if self.is_coarse_due else self._finer_factor()
-        if self.is_coarse_due or factor != self._factor:
+        if self.is_coarse_due or factor != self._factor or self.session.last_pass is None:
             self._factor = factor
-            self.session.set_camera(coarse_camera(self.request.camera, factor))
+            self.session.set_camera(self.request.seen(factor))
         if not self.session.step():
             return False
         self.is_coarse_due = False
+        if self.session is self._whole and self._look is not None:
+            self._look.close()
+            self._look = None
         statistics = self.session.statistics()
-        _, _, width, height = coarse_camera(self.request.camera, self._factor).region
+        _, _, width, height = self.request.seen(self._factor).region
         self._pixel_seconds = statistics.seconds_gather / (max(statistics.passes, 1) * width * height)
         return True
 
     def _take_photons(self) -> bool:
-        snapshot = self.session.snapshot()
+        try:
+            snapshot = self.session.snapshot()
+        except NativeError as error:  # the picture is whole, and goes on
+            self.photons, self._photons_failure = None, str(error)
+            return True
         if snapshot is None:
             return False
         self.photons = photons_of(snapshot, self.session.last_pass, self.request.scene)
@@ -142,7 +197,7 @@ class Rendering:
 
     def _fine_seconds(self) -> float:
         """Return about how long a pass takes with all pixels."""
-        _, _, width, height = self.request.camera.region
+        _, _, width, height = self.request.seen(1).region
         return self._pixel_seconds * width * height
 
     def picture_to_show(self) -> Picture | None:
@@ -151,10 +206,13 @@ class Rendering:
         if statistics.passes > 1 and not self._is_picture_done and now - self._shown < SHOW_SECONDS:
             return None
         self._shown = now
-        x, y, width, height = (edge * self._factor for edge in coarse_camera(self.request.camera, self._factor).region)
+        scale = self._factor * self.request.pixel_size
+        x, y, width, height = (edge * scale for edge in self.request.seen(self._factor).region)
         error = f" | error about {statistics.error:.2%}" if math.isfinite(statistics.error) else ""
         done = " | done" if self._is_picture_done else ""
-        status = f"Pass {statistics.passes}{error} | {statistics.photons_emitted:,} photons{done}"
+        lacking = f" | no photons to show: {self._photons_failure}" if self._photons_failure else ""
+        passes = "First look" if self.session is self._look else f"Pass {statistics.passes}"
+        status = f"{passes}{error} | {statistics.photons_emitted:,} photons{done}{lacking}"
         return Picture(self.session.read(Pass.COMBINED), (x, y, width, height), status)
 
     def give_up(self) -> None:
@@ -164,11 +222,20 @@ class Rendering:
 
     def close(self) -> None:
         """Free what the helper holds."""
-        if self.session is not None:
-            self.session.close()
+        self._end_sessions()
         if self._loaded is not None:
             self._loaded.close()
-        self.session = self._loaded = self.photons = None
+        self._loaded = None
+
+
+def look_settings(settings: RenderSettings) -> RenderSettings | None:
+    """Return settings for a first look at an edit, or None where those that are set must hold.
+
+    Automatic does without its pilot passes, and with few photons; kernels are as wide as so few need.
+    """
+    if not settings.use_auto or settings.integrator != Integrator.PHOTON_MAP:
+        return None
+    return replace(settings, use_auto=False, photon_count=LOOK_PHOTONS)
 
 
 def coarse_camera(camera: Camera, factor: int) -> Camera:

@@ -44,11 +44,8 @@ class ViewportWorker:
         """Render this from now on; what is rendered for another view or scene stops."""
         with self._condition:
             before = self._request
-            if self._is_closed or (
-                request.shows_scene_of(before)
-                and request.camera is before.camera
-                and request.wants_photons == before.wants_photons
-            ):
+            is_same = request.shows_view_of(before) and request.wants_photons == before.wants_photons
+            if self._is_closed or is_same:
                 return
             self._request, self._failure, self._is_idle = request, "", False
             # A first picture is let finish: cancelled by each of many small moves, there would never be one.

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,9 @@ import bpy
 from bpy.props import FloatProperty, IntProperty
 
 from ..engine import last_chart
-from ..engine.render_engine import PhotonMapsEngine
 from ..engine.user_settings import apply_settings
+from ..engine.windows import redraw
+from .polling import is_engine
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,6 +36,7 @@ class _Work:
         self.chart: Chart | None = None
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="photon_maps_chart")
         self.future: Future = self._thread.submit(job.run)
+        self._last_steps: Iterator[None] | None = None
 
     def advance(self) -> bool:
         """Go on when the thread has done its part; return whether all is done.
@@ -47,11 +50,22 @@ class _Work:
             self.chart = result
             self.future = self._thread.submit(_rendered_figure, self._figure())
             return False
-        _show_picture(result)
+        if self._last_steps is None:
+            self._last_steps = self._tell_blender(result)
+        return next(self._last_steps, True) is True
+
+    def _tell_blender(self, pixels: np.ndarray) -> Iterator[None]:
+        """Leave the chart in Blender's data; in steps, for each holds the window for a while."""
+        _fill_image(pixels)
+        yield
+        image = bpy.data.images.get(NAME)
+        if image is not None:  # the user may have removed it since
+            image.pack()
+            yield
+            _show_in_editor(image)
         _write_text(self.chart)
         last_chart.remember(self.scene_uid, self.chart)
         self._thread.shutdown()
-        return True
 
     def _figure(self) -> object:
         from ..engine.chart.figure import draw
@@ -93,9 +107,9 @@ class PHOTON_MAPS_OT_chart_speed_accuracy(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if context.scene is None or context.scene.render.engine != PhotonMapsEngine.bl_idname:
-            cls.poll_message_set("The render engine is not Photon Maps")
-        elif _running is not None:
+        if not is_engine(cls, context):
+            return False
+        if _running is not None:
             cls.poll_message_set("A chart is being made")
         elif bpy.app.is_job_running("RENDER"):
             cls.poll_message_set("A picture is being rendered")
@@ -201,7 +215,7 @@ class PHOTON_MAPS_OT_chart_speed_accuracy(bpy.types.Operator):
             self._timer = None
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        redraw(context)
+        redraw()
 
 
 class PHOTON_MAPS_OT_use_chart_point(bpy.types.Operator):
@@ -233,13 +247,6 @@ class PHOTON_MAPS_OT_use_chart_point(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def redraw(context: bpy.types.Context) -> None:
-    """Have all windows drawn again, for what panels show has changed."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            area.tag_redraw()
-
-
 def _stop() -> None:
     global _running
     if _running is not None:
@@ -247,8 +254,8 @@ def _stop() -> None:
         _running = None
 
 
-def _show_picture(pixels: np.ndarray) -> None:
-    """Put the figure into its image, and that into an open Image Editor."""
+def _fill_image(pixels: np.ndarray) -> None:
+    """Put the figure into its image."""
     import numpy as np
 
     height, width = pixels.shape[:2]
@@ -260,7 +267,10 @@ def _show_picture(pixels: np.ndarray) -> None:
     opaque = np.concatenate([pixels, np.ones((height, width, 1), np.float32)], axis=-1)
     image.pixels.foreach_set(opaque.ravel())
     image.update()
-    image.pack()
+
+
+def _show_in_editor(image: bpy.types.Image) -> None:
+    """Show it in an open Image Editor."""
     editors = [
         area.spaces.active
         for window in bpy.context.window_manager.windows

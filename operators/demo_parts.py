@@ -122,8 +122,35 @@ def camera(scene: bpy.types.Scene, place: Place, target: Place, lens: float) -> 
     return made
 
 
+def faces_mesh(name: str, corners: Sequence[Place], faces: Sequence[Sequence[int]]) -> bpy.types.Mesh:
+    """Return a mesh of flat faces."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(corners, [], faces)
+    return mesh
+
+
+def block(name: str, low: Place, high: Place) -> bpy.types.Mesh:
+    """Return a box between two corners, whose faces look outwards."""
+    corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return faces_mesh(name, corners, faces)
+
+
+def area_lamp(scene: bpy.types.Scene, name: str, place: Matrix, watts: float, size: float) -> bpy.types.Object:
+    """Add a square lamp that the camera sees; it shines along its -z axis."""
+    lamp = bpy.data.lights.new(name, "AREA")
+    lamp.shape, lamp.size, lamp.energy = "SQUARE", size, watts
+    thing = link(scene, name, lamp)
+    thing.matrix_world, thing.visible_camera = place, True
+    return thing
+
+
+def black_world(scene: bpy.types.Scene) -> None:
+    """Leave the scene to its lamps."""
+    scene.world = bpy.data.worlds.new("Black")
+    use_nodes(scene.world)
+
+
 def table(half: float) -> bpy.types.Mesh:
     """Return a square table top about the origin."""
-    mesh = bpy.data.meshes.new("Table")
-    mesh.from_pydata([(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [], [(0, 1, 2, 3)])
-    return mesh
+    return faces_mesh("Table", [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [(0, 1, 2, 3)])

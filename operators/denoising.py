@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..engine.render_engine import PhotonMapsEngine
+from .polling import is_engine
 
 #: Outputs of a Render Layers node, and the inputs of a Denoise node that they lead to.
 GUIDES = {"Denoising Albedo": "Albedo", "Denoising Normal": "Normal"}
@@ -24,13 +24,11 @@ class PHOTON_MAPS_OT_set_up_denoising(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if context.scene is None or context.scene.render.engine != PhotonMapsEngine.bl_idname:
-            cls.poll_message_set("The render engine is not Photon Maps")
-        elif not context.scene.is_editable:
+        if not is_engine(cls, context):
+            return False
+        if not context.scene.is_editable:
             cls.poll_message_set("The scene is linked from another file")
-        else:
-            return True
-        return False
+        return context.scene.is_editable
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         scene, layer = context.scene, context.view_layer

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..engine.diagnostics import diagnostics
-from ..engine.render_engine import PhotonMapsEngine
+from .polling import is_engine
 
 
 class PHOTON_MAPS_OT_select_named(bpy.types.Operator):
@@ -49,10 +49,7 @@ class PHOTON_MAPS_OT_copy_diagnostics(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if context.scene is None or context.scene.render.engine != PhotonMapsEngine.bl_idname:
-            cls.poll_message_set("The render engine is not Photon Maps")
-            return False
-        return True
+        return is_engine(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         context.window_manager.clipboard = diagnostics(context.scene, context.view_layer)

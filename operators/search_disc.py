@@ -3,14 +3,25 @@
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Callable
+
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from ..engine import last_photons, search_disc
-from ..engine.overlay_properties import redraw_views
-from ..engine.render_engine import PhotonMapsEngine
+from ..engine.windows import redraw_photons
+from .polling import is_engine
 
 ENDING = {"ESC", "RIGHTMOUSE"}
+
+
+def _nobody() -> None:
+    return None
+
+
+#: Gives the operator that follows the mouse; weak, for Blender frees one that raised without telling it.
+_running: Callable[[], bpy.types.Operator | None] = _nobody
 
 
 class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
@@ -24,9 +35,16 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if context.scene is None or context.scene.render.engine != PhotonMapsEngine.bl_idname:
-            cls.poll_message_set("The render engine is not Photon Maps")
-        elif not context.scene.photon_maps_overlay.show:
+        if _running() is not None:
+            cls.poll_message_set("The search disc is shown already; Esc in a 3D view ends it")
+            return False
+        return cls._has_photons(context)
+
+    @classmethod
+    def _has_photons(cls, context: bpy.types.Context) -> bool:
+        if not is_engine(cls, context):
+            return False
+        if not context.scene.photon_maps_overlay.show:
             cls.poll_message_set("The photon overlay is off")
         elif last_photons.recall(context.scene.session_uid, context.view_layer.name) is None:
             cls.poll_message_set("There are no photons yet: render, in the viewport or with F12")
@@ -35,6 +53,8 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
         return False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        global _running
+        _running = weakref.ref(self)
         context.window_manager.modal_handler_add(self)
         self._workspace = context.workspace  # another may be current at the end
         self._workspace.status_text_set("Search Disc  |  Esc, right button: end")
@@ -42,7 +62,7 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type in ENDING or not self.poll(context):
+        if event.type in ENDING or not self._has_photons(context):
             self._end(context)
             return {"FINISHED"}
         if event.type == "MOUSEMOVE":
@@ -57,12 +77,14 @@ class PHOTON_MAPS_OT_search_disc(bpy.types.Operator):
         before = search_disc.current()
         search_disc.show(find_disc(context, event.mouse_x, event.mouse_y))
         if before is not None or search_disc.current() is not None:
-            redraw_views(context)
+            redraw_photons()
 
     def _end(self, context: bpy.types.Context) -> None:
+        global _running
+        _running = _nobody
         search_disc.show(None)
         self._workspace.status_text_set(None)
-        redraw_views(context)
+        redraw_photons()
 
 
 def find_disc(context: bpy.types.Context, x: int, y: int) -> search_disc.SearchDisc | None:

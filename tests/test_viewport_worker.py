@@ -15,7 +15,7 @@ from photon_maps_native import Camera, NativeError
 from photon_maps_native.errors import Status
 
 from engine.settings import RenderSettings
-from engine.viewport_rendering import Picture, Request
+from engine.viewport_rendering import LOOK_PHOTONS, Picture, Request
 from engine.viewport_worker import ViewportWorker, close_all, paused
 from tests.shapes import camera
 from tests.test_determinism import still_life
@@ -32,7 +32,9 @@ class Stage:
     pass_seconds: float = 1e-6  #: that the helper says a pass took
     is_held: bool = False  #: passes of fine pictures wait for a cancel
     is_coarse_held: bool = False
+    held: set[str] = field(default_factory=set)  #: sessions whose passes wait for a cancel, by name
     trouble: Exception | None = None  #: of the next pass
+    snapshot_trouble: Exception | None = None  #: of every snapshot
     open_things: int = 0
 
     def load(self, scene: object) -> StageScene:
@@ -40,7 +42,7 @@ class Stage:
         return StageScene(self)
 
     def start(self, scene: object, settings: RenderSettings, camera: Camera, map_bytes: int) -> StageSession:
-        return StageSession(self, camera)
+        return StageSession(self, camera, "look" if settings.photon_count == LOOK_PHOTONS else "pass")
 
     def worker(self) -> ViewportWorker:
         return ViewportWorker(self.load, self.start)
@@ -56,8 +58,9 @@ class StageScene:
 
 
 class StageSession(StageScene):
-    def __init__(self, stage: Stage, camera: Camera) -> None:
+    def __init__(self, stage: Stage, camera: Camera, name: str) -> None:
         super().__init__(stage)
+        self.name = name
         self.cancelled = threading.Event()
         self.set_camera(camera)
 
@@ -70,9 +73,9 @@ class StageSession(StageScene):
             trouble, stage.trouble = stage.trouble, None
             raise trouble
         is_held = stage.is_held if width == SIZE[0] else stage.is_coarse_held
-        stage.log.append(f"pass {width}")
+        stage.log.append(f"{self.name} {width}")
         end = time.monotonic() + PATIENCE
-        while is_held and not self.cancelled.is_set():
+        while (is_held or self.name in stage.held) and not self.cancelled.is_set():
             is_held = stage.is_held if width == SIZE[0] else stage.is_coarse_held
             assert time.monotonic() < end
             time.sleep(0.001)
@@ -89,6 +92,8 @@ class StageSession(StageScene):
 
     def snapshot(self) -> object:
         self.stage.log.append("photons")
+        if self.stage.snapshot_trouble is not None:
+            raise self.stage.snapshot_trouble
         return object()
 
     def cancel(self) -> None:
@@ -158,6 +163,17 @@ def test_dear_pictures_become_finer_step_by_step(stage: Stage) -> None:
     assert stage.log[7:] == ["pass 5", "pass 10", "pass 20", "pass 40", *["pass 80"] * 3]
 
 
+def test_large_pixels_are_the_finest(stage: Stage) -> None:
+    worker, wanted = stage.worker(), request(pixel_size=4)
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    assert worker.picture.pixels.shape == (16, 20, 4) and worker.picture.region == (0, 0, *SIZE)
+    worker.show(replace(wanted, pixel_size=1))
+    wait_for(lambda: not worker.is_busy)
+    assert worker.picture.pixels.shape == (64, 80, 4)
+    assert stage.log.count("load") == 1
+
+
 def test_photons_are_taken_for_a_first_look_and_of_the_last_pass(stage: Stage) -> None:
     worker, wanted = stage.worker(), request(wants_photons=True)
     worker.show(wanted)
@@ -183,6 +199,22 @@ def test_photons_that_are_wanted_later_cost_no_pass(stage: Stage) -> None:
     worker.show(wanted)
     wait_for(lambda: not worker.is_busy and worker.photons is None)
     assert stage.log == [*before, "photons"]
+
+
+def test_photons_that_cannot_be_taken_leave_the_picture(stage: Stage) -> None:
+    stage.snapshot_trouble = NativeError(Status.OUT_OF_MEMORY, "no room")
+    worker, wanted = stage.worker(), request(wants_photons=True)
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log == ["load", "pass 10", "photons", *["pass 80"] * stage.passes]
+    assert (worker.picture.pixels == stage.passes).all() and not worker.failure
+    assert worker.picture.status.endswith("no photons to show: no room") and worker.photons is None
+    # Switched off and on again, they are tried once more.
+    stage.snapshot_trouble = None
+    worker.show(replace(wanted, wants_photons=False))
+    wait_for(lambda: not worker.is_busy)
+    worker.show(wanted)
+    wait_for(lambda: worker.photons is not None)
 
 
 def test_nothing_runs_once_it_is_done(stage: Stage) -> None:
@@ -228,16 +260,60 @@ def test_a_first_picture_is_finished_while_the_camera_goes_on_moving(stage: Stag
 
 
 @pytest.mark.parametrize(
-    "change", [{"scene": still_life()}, {"settings": RenderSettings(seed=1)}], ids=["scene", "settings"]
+    ("change", "loads"),
+    [({"scene": still_life()}, 2), ({"settings": RenderSettings(seed=1)}, 1)],
+    ids=["scene", "settings"],
 )
-def test_another_scene_or_setting_is_loaded(stage: Stage, change: dict) -> None:
+def test_another_scene_is_loaded_and_another_setting_begins_again(stage: Stage, change: dict, loads: int) -> None:
     worker, wanted = stage.worker(), request()
     worker.show(wanted)
     wait_for(lambda: not worker.is_busy)
     worker.show(replace(wanted, **change))
     wait_for(lambda: not worker.is_busy)
-    assert stage.log.count("load") == 2
+    assert stage.log.count("load") == loads
+    assert stage.log.count("pass 80") == 2 * stage.passes
     assert stage.open_things == 2  # a scene and a session
+
+
+AUTOMATIC = RenderSettings(use_auto=True)
+
+
+def test_an_edit_is_seen_with_few_photons_first(stage: Stage) -> None:
+    worker, wanted = stage.worker(), request(settings=AUTOMATIC)
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    assert not [line for line in stage.log if line.startswith("look")]
+    stage.log.clear()
+    worker.show(replace(wanted, scene=still_life()))
+    wait_for(lambda: not worker.is_busy)
+    assert worker.picture.status.startswith("Pass 3")
+    assert stage.log == ["load", "look 80", *["pass 80"] * stage.passes]  # so little does a pixel cost here
+    assert stage.open_things == 2  # the first look is gone
+
+
+def test_while_a_view_of_an_edit_moves_it_is_seen_with_few_photons(stage: Stage) -> None:
+    worker, wanted = stage.worker(), request(settings=AUTOMATIC)
+    worker.show(wanted)
+    wait_for(lambda: not worker.is_busy)
+    stage.log.clear()
+    stage.held = {"pass"}
+    edited = replace(wanted, scene=still_life())
+    worker.show(edited)
+    wait_for(lambda: "pass 80" in stage.log)
+    assert worker.picture.status.startswith("First look")
+    worker.show(replace(edited, camera=camera((1, -5, 3), (0, 0, 0), SIZE)))
+    wait_for(lambda: stage.log.count("pass 80") == 2)
+    assert stage.log == ["load", "look 80", "pass 80", "cancelled", "look 80", "pass 80"]
+    stage.held = set()
+    wait_for(lambda: not worker.is_busy)
+    # Now that there are photon maps, they show it from elsewhere, too.
+    worker.show(edited)
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log.count("look 80") == 2
+    # Settings by hand hold from the first picture on.
+    worker.show(replace(edited, settings=RenderSettings()))
+    wait_for(lambda: not worker.is_busy)
+    assert stage.log.count("look 80") == 2
 
 
 @pytest.mark.parametrize("hold", ["is_held", "is_coarse_held"])

@@ -13,10 +13,6 @@ from ..engine.render_engine import PhotonMapsEngine
 LEFT_OUT = {
     "DATA_PT_light",  # the fuller one is below
     "DATA_PT_falloff_curve",
-    "DATA_PT_preview",
-    "MATERIAL_PT_preview",
-    "TEXTURE_PT_preview",
-    "WORLD_PT_preview",
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
     "RENDER_PT_stereoscopy",
@@ -28,6 +24,7 @@ LEFT_OUT = {
 #: EEVEE's panels that hold here, too. Not Cycles': those share one set of engines, so adding to one shows all.
 ADDED = {
     "EEVEE_MATERIAL_PT_context_material",
+    "MATERIAL_PT_preview",
     "EEVEE_WORLD_PT_surface",
     "DATA_PT_EEVEE_light",
     "DATA_PT_camera_dof",

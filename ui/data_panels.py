@@ -80,6 +80,19 @@ class PHOTON_MAPS_PT_ray_visibility(Panel, bpy.types.Panel):
             column.prop(context.object, "visible_shadow", text="Shadow")
 
 
+class PHOTON_MAPS_PT_world_preview(Panel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.template_preview(context.world)
+
+
 class PHOTON_MAPS_PT_world_visibility(Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "world"
@@ -101,6 +114,7 @@ CLASSES = (
     PHOTON_MAPS_PT_beam,
     PHOTON_MAPS_PT_panorama,
     PHOTON_MAPS_PT_ray_visibility,
+    PHOTON_MAPS_PT_world_preview,
     PHOTON_MAPS_PT_world_visibility,
 )
 

@@ -141,6 +141,7 @@ class PHOTON_MAPS_PT_performance(Panel, bpy.types.Panel):
         threads = column.column()
         threads.active = render.threads_mode == "FIXED"
         threads.prop(render, "threads")
+        column.prop(render, "preview_pixel_size", text="Pixel Size")
 
 
 class PHOTON_MAPS_PT_passes(Panel, bpy.types.Panel):

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..engine import last_photons, search_disc
-from ..engine.overlay_properties import redraw_views
 from ..engine.point_budget import PointBudget
 from ..engine.render_engine import PhotonMapsEngine
+from ..engine.windows import redraw_photons
 
 if TYPE_CHECKING:
     import gpu
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 TEXT_SIZE, LINE_HEIGHT, MARGIN = 12, 17, 12  #: in points of the interface
 SETTLE_SECONDS = 0.4  #: after a motion until all points are drawn
 LOOK_SECONDS = 0.3  #: between two looks whether there are new photons
-GLOBAL_COLOR, CAUSTIC_COLOR = (0.35, 0.65, 1.0), (1.0, 0.6, 0.15)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +182,7 @@ def _settle() -> float | None:
     still = time.monotonic() - _moved
     if still < SETTLE_SECONDS:
         return SETTLE_SECONDS - still
-    redraw_views(bpy.context)
+    redraw_photons()
     return None
 
 
@@ -194,24 +193,35 @@ def _look() -> float | None:
     last_photons.forget_others(showing)
     for key in [key for key, drawn in _drawn.items() if last_photons.recall(*key) is not drawn.photons]:
         del _drawn[key]
+    _forget_closed_regions()
     if last_photons.changes() != _seen:
         _seen = last_photons.changes()
-        redraw_views(bpy.context)
+        redraw_photons()
     return LOOK_SECONDS if showing else None
+
+
+def _forget_closed_regions() -> None:
+    areas = [area for window in bpy.context.window_manager.windows for area in window.screen.areas]
+    there = {region.as_pointer() for area in areas for region in area.regions}
+    for region in _budgets.keys() - there:
+        del _budgets[region]
 
 
 def _draw_disc(disc: search_disc.SearchDisc) -> None:
     import gpu
     from gpu_extras.batch import batch_for_shader
 
+    from ..engine.photon_look import KIND_COLORS, Shown
+
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     gpu.state.line_width_set(2.0)
-    for found, color in ((disc.probe.global_map, GLOBAL_COLOR), (disc.probe.caustic_map, CAUSTIC_COLOR)):
+    for found, kind in ((disc.probe.global_map, Shown.GLOBAL), (disc.probe.caustic_map, Shown.CAUSTIC)):
         if not found.radius > 0.0:
             continue
+        color = KIND_COLORS[kind]
         circle = search_disc.circle(disc.probe, found.radius)
-        for kind, alpha in (("TRI_FAN", 0.25), ("LINE_LOOP", 1.0)):
-            batch = batch_for_shader(shader, *_corners(kind, circle))
+        for form, alpha in (("TRI_FAN", 0.25), ("LINE_LOOP", 1.0)):
+            batch = batch_for_shader(shader, *_corners(form, circle))
             shader.uniform_float("color", (*color, alpha))
             batch.draw(shader)
     gpu.state.line_width_set(1.0)

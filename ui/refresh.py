@@ -10,6 +10,7 @@ from __future__ import annotations
 import bpy
 
 from ..engine import last_render
+from ..engine.windows import redraw
 
 LOOK_SECONDS = 0.5
 
@@ -20,10 +21,7 @@ def _look() -> float:
     global _seen
     if last_render.count() != _seen:
         _seen = last_render.count()
-        for window in bpy.context.window_manager.windows:
-            for area in window.screen.areas:
-                if area.type == "PROPERTIES":
-                    area.tag_redraw()
+        redraw("PROPERTIES")
     return LOOK_SECONDS
 
 

@@ -36,6 +36,10 @@ class Layout:
     def popover(self, panel, **_):
         assert hasattr(bpy.types, panel), panel
 
+    def template_preview(self, block):
+        assert isinstance(block, bpy.types.ID)
+        self.texts.append("preview")
+
     def template_node_view(self, *_):
         self.texts.append("nodes")
 

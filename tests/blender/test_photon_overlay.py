@@ -87,13 +87,17 @@ def test_what_is_shown_is_what_was_asked_for(watched, extension):
     assert (on_floor | on_wall).all() and on_floor.any() and on_wall.any()
 
 
-def test_paths_lead_from_the_lamp(watched, extension):
+@pytest.mark.parametrize("gather", [False, True], ids=["photon map", "final gather"])
+def test_paths_lead_from_the_lamp_each_once(watched, extension, gather):
+    watched.photon_maps.use_final_gather = gather
     render_with_summary(watched)
+    assert (kept(watched, extension).counts[0] > 0) == gather  # those straight from lights are stored for it alone
     shown = points(watched, extension, path_count=20)
     ends = shown.lines.reshape(-1, 2, 3)
-    assert len(ends) >= 40 and len(shown.line_colors) == 2 * len(ends)
+    assert len(ends) >= (20 if gather else 40) and len(shown.line_colors) == 2 * len(ends)
     at_lamp = np.abs(ends[:, 0, 2] - 2.0) < 1e-3
     assert at_lamp.sum() == 20
+    assert len(np.unique(ends.reshape(-1, 6), axis=0)) == len(ends)
 
 
 def test_colours_tell_what_they_say(watched, extension):

@@ -20,13 +20,29 @@ HERE = Path(__file__).resolve().parent
 BUILD = HERE.parents[1] / "build"
 DIST = HERE.parents[1] / "dist"
 ROOT = Path(os.environ.get("BLENDER_ROOT") or BUILD / "blender-trixie")
-SECONDS = 400  #: after which a script has hung
+SECONDS = 1200  #: after which a script has hung, on a machine that has other work
 #: What a crash, a broken callback or a thread that was forgotten writes.
 TROUBLE = ("Traceback", "Error:", "EXCEPTION_ACCESS", "Segmentation", "Writing: /", "Fatal Python", "free'd twice")
 
 
 #: What is worth knowing but no reason to fail: times depend on the machine.
 FIGURES: list[str] = []
+
+
+def held(name: str, times: list[list[float]]) -> str:
+    """Say how long a callback held the window.
+
+    :param times: of each call, seconds by the clock and of the thread's own CPU time: other programs, other threads and
+        the graphics take the difference.
+    """
+    if not times:
+        return f"{name}: never called"
+    walls, spent = ([1e3 * time for time in column] for column in zip(*times, strict=True))
+    most, half = spent.index(max(spent)), sorted(walls)[len(walls) // 2]
+    return (
+        f"{name}, {len(times)} calls: the first {walls[0]:.0f} ms (CPU {spent[0]:.0f}), half under "
+        f"{half:.1f}, the longest {max(walls):.0f}; most CPU {spent[most]:.1f} in {walls[most]:.0f}"
+    )
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -89,7 +89,7 @@ def threads() -> int:
     return sum(thread.name == "photon_maps viewport" for thread in threading.enumerate())
 
 
-def until(condition: Callable[[], bool], seconds: float = 60.0, interval: float = 0.05) -> Steps:
+def until(condition: Callable[[], bool], seconds: float = 180.0, interval: float = 0.05) -> Steps:
     """Wait for a condition."""
     end = time.monotonic() + seconds
     while not condition():

@@ -94,9 +94,10 @@ def cancelled() -> driver.Steps:
 
 
 def finished() -> driver.Steps:
-    calls = {name: [] for name in ("_begin", "_advance", "_tell", "_end")}
-    for name, seconds in calls.items():
-        windows.timed(chart().PHOTON_MAPS_OT_chart_speed_accuracy, name, seconds)
+    calls = results.setdefault("held", {name: [] for name in ("_begin", "_advance", "_tell", "_end")})
+    for name, times in calls.items():
+        windows.timed(chart().PHOTON_MAPS_OT_chart_speed_accuracy, name, times)
+    windows.timed(windows.module("engine.capture"), "take", calls.setdefault("capture.take", []))
     slots = len(bpy.data.images["Render Result"].render_slots)
     gaps = windows.watch_gaps(lambda: bool(bpy.data.texts))
     start()
@@ -107,7 +108,6 @@ def finished() -> driver.Steps:
     results["image"] = list(image.size)
     results["text"] = bpy.data.texts[NAME].as_string()
     results["new_slots"] = len(bpy.data.images["Render Result"].render_slots) - slots
-    results["held"] = {name: sorted(seconds)[-3:] for name, seconds in calls.items()}
     results["gaps"] = {"median": sorted(gaps)[len(gaps) // 2], "longest": sorted(gaps)[-5:], "count": len(gaps)}
     with windows.override("IMAGE_EDITOR"):
         bpy.ops.image.view_all(fit_view=True)

@@ -12,10 +12,13 @@ sys.path.insert(0, os.getcwd())
 
 import bpy
 import driver
+import windows
 from driver import converged, in_viewport, results, screenshot, shade, threads, until, viewports, workers
 from mathutils import Quaternion
 
 LONG = 100_000  #: passes that no test waits for
+#: What holds the window, and the parts of it.
+CALLBACKS = ("update", "draw", "_look", "_start", "_read", "_ask", "_keep_photons", "_draw_picture")
 
 
 def scene() -> bpy.types.Scene:
@@ -55,26 +58,13 @@ def new_picture(change, is_scene_new: bool, number: int = 0) -> driver.Steps:
     yield from until(lambda: worker.picture is not picture)
 
 
-def watched(name: str) -> None:
-    """Take the time of a callback."""
-    from bl_ext.user_default.photon_maps.engine.viewport_render import Viewport
-
-    callback = getattr(Viewport, name)
-
-    def timed(*arguments):
-        began = time.perf_counter()
-        callback(*arguments)
-        results.setdefault(name, []).append(time.perf_counter() - began)
-
-    setattr(Viewport, name, timed)
-
-
 def steps() -> driver.Steps:
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield 0.5
     set_up(passes=4)
-    watched("update")
-    watched("draw")
+    viewport = windows.module("engine.viewport_render").Viewport
+    for name in CALLBACKS:
+        windows.timed(viewport, name, results.setdefault("held", {}).setdefault(name, []))
 
     # Converge, and rest.
     assert threads() == 0
@@ -191,7 +181,7 @@ def steps() -> driver.Steps:
     yield 0.5
 
     # F12 meanwhile, and the viewport goes on.
-    set_value("passes", 8)
+    set_value("passes", 2)
     done = []
     bpy.app.handlers.render_complete.append(lambda *_: done.append(True))
     with in_viewport():

@@ -187,6 +187,8 @@ def disc(scene: bpy.types.Scene) -> driver.Steps:
         "radius": found.probe.global_map.radius,
     }
     screenshot("overlay_disc.png")
+    with in_viewport():
+        results["disc can start twice"] = bpy.ops.photon_maps.search_disc.poll()
     point(x, 3)  # the menus
     yield from until(lambda: search.current() is None, 20.0)
     point(x, y)
@@ -196,6 +198,19 @@ def disc(scene: bpy.types.Scene) -> driver.Steps:
     point(x + 5, y)
     yield 1.0
     results["disc after Esc"] = search.current() is not None
+    with in_viewport():
+        results["disc can start again"] = bpy.ops.photon_maps.search_disc.poll()
+
+
+def closed_view() -> driver.Steps:
+    """A second view of the photons, and its end."""
+    budgets = part("ui.photon_overlay")._budgets
+    with in_viewport():
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    yield from until(lambda: len(budgets) == 2, 20.0)
+    with in_viewport(1):
+        bpy.ops.screen.area_close()
+    yield from until(lambda: len(budgets) == 1, 20.0)
 
 
 def million(scene: bpy.types.Scene) -> driver.Steps:
@@ -210,11 +225,11 @@ def million(scene: bpy.types.Scene) -> driver.Steps:
     yield 1.0
     redraw()
     drawing = part("ui.photon_overlay")
-    batch = drawing._drawn[scene.session_uid].batch
-    results["points"] = len(drawing._drawn[scene.session_uid].points.positions)
+    batch = drawing._drawn[scene.session_uid, "ViewLayer"].batch
+    results["points"] = len(drawing._drawn[scene.session_uid, "ViewLayer"].points.positions)
     results["with"] = orbit()
     results["still"] = [redraw(), redraw()]
-    results["kept"] = drawing._drawn[scene.session_uid].batch is batch
+    results["kept"] = drawing._drawn[scene.session_uid, "ViewLayer"].batch is batch
     screenshot("overlay_million.png")
     overlay.limit = 1
     redraw()
@@ -236,6 +251,7 @@ def steps() -> driver.Steps:
     yield 0.5
     yield from overlays(scene)
     yield from disc(scene)
+    yield from closed_view()
     yield from million(scene)
 
     # A final render's photons, then another engine and another file: nothing is left.
@@ -247,7 +263,7 @@ def steps() -> driver.Steps:
     viewport_photons = photons()
     bpy.ops.render.render()
     drawing = part("ui.photon_overlay")
-    yield from until(lambda: drawing._drawn[scene.session_uid].photons is photons(), 20.0)
+    yield from until(lambda: drawing._drawn[scene.session_uid, "ViewLayer"].photons is photons(), 20.0)
     results["final render"] = [photons() is not viewport_photons, photons().stored]
     yield 1.0
     scene.render.engine = "BLENDER_WORKBENCH"

@@ -128,6 +128,30 @@ def views(scene: bpy.types.Scene) -> driver.Steps:
     thing.data.shift_x = thing.data.shift_y = 0.0
 
 
+def radiance() -> float:
+    """Return the mean radiance of the box."""
+    pixels = current().picture.pixels
+    return float(pixels[pixels[..., 3] > 0.999, :3].mean())
+
+
+def shown_otherwise(scene: bpy.types.Scene) -> driver.Steps:
+    """Large pixels, and another light than the scene's, which has none."""
+    _, _, region, space = viewports()[0]
+    scene.render.preview_pixel_size = "4"
+    yield from picture()
+    large = current().picture
+    results["large pixels"] = [list(large.pixels.shape[:2]), list(large.region), [region.width, region.height]]
+    scene.render.preview_pixel_size = "1"
+    yield from picture()
+    results["small pixels"] = list(current().picture.pixels.shape[:2])
+    results["radiance without a light"] = radiance()
+    space.shading.use_scene_world_render = False
+    yield from picture()
+    results["radiance under a plain sky"] = radiance()
+    space.shading.use_scene_world_render = True
+    yield from picture()
+
+
 def colours(scene: bpy.types.Scene) -> driver.Steps:
     """A world of one colour through each view transform: on the screen, and in the file of a final render."""
     bpy.data.objects.remove(bpy.data.objects["Box"])
@@ -175,6 +199,7 @@ def steps() -> driver.Steps:
     shade("RENDERED")
     yield 0.5
     yield from views(scene)
+    yield from shown_otherwise(scene)
     yield from colours(scene)
 
 

@@ -29,6 +29,7 @@ def test_the_disc_is_where_the_mouse_points(results: dict) -> None:
     assert disc["position"] == pytest.approx([0.9, -1.2, 0.0], abs=0.02)
     assert 0 < disc["radius"] <= 0.15 and f"Global map: {disc['photons']} photons within" in disc["lines"][1]
     assert not results["disc after Esc"]
+    assert results["disc can start again"] and not results["disc can start twice"]
 
 
 def test_a_million_points_stay_on_the_card_while_the_view_moves(results: dict) -> None:

@@ -9,10 +9,11 @@ MEGABYTE = 2**20
 
 
 def test_two_hundred_random_actions(blender: Blender) -> None:
-    results = blender.run("script_random.py", seconds=1200)  # which looks for crashes and tracebacks
+    results = blender.run("script_random.py")  # which looks for crashes and tracebacks
     memory = [bytes_ / MEGABYTE for bytes_ in results["memory"]]
     FIGURES.append(f"random actions: memory in between {', '.join(f'{size:.0f}' for size in memory)} MB")
     FIGURES.append(f"random actions: {results['counts']}, refused: {len(results.get('refused', []))}")
     assert sum(results["counts"].values()) == 200 and results["threads"] == 0
-    # The first has not yet loaded all that Blender loads once; undo keeps its steps.
-    assert memory[-1] - memory[1] < 100
+    # In the first hundred actions Blender still meets what it loads once: shaders, Cycles, room for undo's steps.
+    _, _, halfway, _, last = memory
+    assert last - halfway < 50

@@ -40,6 +40,18 @@ def test_a_border_is_all_that_is_rendered(results: dict) -> None:
     assert results["camera border"]["region"] == pytest.approx(expected, abs=1)
 
 
+def test_pixels_are_as_large_as_asked(results: dict) -> None:
+    (height, width), region, size = results["large pixels"]
+    assert [width, height] == [-(-size[0] // 4), -(-size[1] // 4)]
+    assert region == [0, 0, 4 * width, 4 * height] and results["small pixels"] == size[::-1]
+
+
+def test_a_plain_sky_lights_what_the_scene_does_not(results: dict) -> None:
+    assert results["radiance without a light"] == 0.0
+    # The box is grey with albedo 0.8, and the sky's radiance 0.5 all around.
+    assert results["radiance under a plain sky"] == pytest.approx(0.8 * 0.5, rel=0.05)
+
+
 def test_a_panorama_fills_the_frame_of_its_camera(results: dict) -> None:
     assert results["panorama"]["region"] == pytest.approx(results["panorama"]["frame"], abs=1.5)
 

@@ -71,16 +71,19 @@ def open_only(*names: str) -> None:
         one.register()
 
 
-def timed(owner: type, name: str, seconds: list[float]) -> None:
-    """Keep the time that each call of a method takes; of one that Python calls, not Blender, which counts arguments."""
+def timed(owner: object, name: str, times: list[tuple[float, float]]) -> None:
+    """Keep the time of each call of a method or a function, by the clock and of the thread's own CPU time.
+
+    It must be one that Python calls, not Blender, which counts arguments.
+    """
     original = getattr(owner, name)
 
     def instead(*arguments):
-        began = time.perf_counter()
+        began, spent = time.perf_counter(), time.thread_time()
         try:
             return original(*arguments)
         finally:
-            seconds.append(time.perf_counter() - began)
+            times.append((time.perf_counter() - began, time.thread_time() - spent))
 
     setattr(owner, name, instead)
 
