@@ -57,7 +57,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 .NOTPARALLEL:
 .PHONY: help demo beside seed chart limits prediction calibration sweep package package-twice \
     $(PLATFORMS:%=package-twice-%) test built-checks test-native test-python test-gui test-versions test-first-render \
-    test-wine test-campaign lint format bench docs clean
+    test-wine test-campaign soak mutate lint format bench docs clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -68,6 +68,8 @@ help:
 	@echo 'make test-versions   the package in every Blender from 4.2 to 5.2 that is a Python module, 1.4 GB the first time'
 	@echo 'make test-first-render   install and F12 in the oldest Blender, the newest, and 5.0'
 	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
+	@echo 'make soak      what takes long to break: random calls under sanitizers, many renders, [SOAK_SECONDS=600] each'
+	@echo 'make mutate    break the program in some ninety places, one at a time, and see that a test notices'
 	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
@@ -308,6 +310,31 @@ test-wine: .venv/test.stamp build/native/stamp build/replay/replay build/replay/
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m campaign
 	$(PYTHON) -m pytest tests/blender -o pythonpath=. -m campaign
+
+# Random calls under the sanitizers, one render under that of threads, and many renders, passes and viewports.
+SOAK_SECONDS := 600
+SOAKED := test_fuzz test_call_order
+soak: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
+	cmake -S engine/native -B build/cmake/sanitize -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
+	    -DPHOTON_MAPS_SANITIZE=ON -DCMAKE_CXX_FLAGS_RELEASE=-O1
+	cmake -S engine/native -B build/cmake/threads -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
+	    -DPHOTON_MAPS_SANITIZE_THREADS=ON -DCMAKE_CXX_FLAGS_RELEASE=-O1
+	cmake --build build/cmake/sanitize --target $(SOAKED)
+	cmake --build build/cmake/threads --target test_api
+	@for check in $(SOAKED); do \
+	    echo "== $$check"; \
+	    ASAN_OPTIONS=detect_leaks=0 PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
+	        build/cmake/sanitize/$$check $$(date +%s) $(SOAK_SECONDS) || exit 1; \
+	done
+	@# Embree and its threads are as published: what happens in there is not seen.
+	@echo '== threads'
+	TSAN_OPTIONS=suppressions=engine/native/tests/threads.supp PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) build/cmake/threads/test_api
+	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m soak
+	$(PYTHON) -m pytest tests/blender -o pythonpath=. -m soak
+
+# What was found is kept in build/mutate until the mutated file or its tests change: [MUTATE="--only lamp"]
+mutate: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
+	$(PYTHON) tools/mutate.py $(MUTATE)
 
 bench: build/native/stamp .venv/system.stamp
 	@[ -e /usr/include/nanoflann.hpp ] || bash tools/apt_install.sh libnanoflann-dev

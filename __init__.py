@@ -3,7 +3,7 @@
 
 import sys
 
-from .engine import overlay_properties, properties, render_engine
+from .engine import migration, overlay_properties, preferences, properties, render_engine
 from .operators import add_demo, chart, denoising, messages, presets, search_disc
 from .ui import (
     chart_panel,
@@ -24,7 +24,7 @@ for name in [name for name in sys.modules if name.partition(".")[0] == "photon_m
 
 #: In the order of registration; each has register() and unregister().
 MODULES = (
-    *(properties, overlay_properties, render_engine),
+    *(preferences, properties, overlay_properties, migration, render_engine),
     *(add_demo, chart, denoising, messages, presets, search_disc),
     *(panels, messages_panel, chart_panel, data_panels, overlay_panels, view_panels, compatibility),
     *(photon_overlay, refresh),

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 POLL_SECONDS = 0.02  #: between two looks at Esc
 SHOW_SECONDS = 0.5  #: between two pictures on the way
+SPARE = "Lower the number of photons, Max Bounces or the resolution."
 
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
@@ -79,6 +80,8 @@ def _render_layer(
     engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, messages: Messages
 ) -> tuple[tuple[str, ...], Summary | None]:
     """Render, and return which maps were built and why others were not, and the summary; None if nothing was begun."""
+    from photon_maps_native import NativeError, Status
+
     from .export.scene import read_scene
     from .session import Session
 
@@ -100,7 +103,13 @@ def _render_layer(
     settings = render_settings(depsgraph.scene_eval)
     with Session(scene, settings, frozenset(info.buffer for info in passes)) as session:
         picture = RenderResult(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], passes)
-        step_until_done(engine, session, picture)
+        try:
+            step_until_done(engine, session, picture)
+        except NativeError as error:
+            done = session.statistics().passes
+            if error.status != Status.OUT_OF_MEMORY or done == 0:
+                raise
+            messages.add(depsgraph.scene.name, f"ran out of memory after {done} passes; the picture has those.", SPARE)
         if depsgraph.scene.photon_maps_overlay.show:
             _keep_photons(engine, session, scene, depsgraph, messages)
         statistics = session.statistics()
@@ -108,6 +117,8 @@ def _render_layer(
         engine.update_stats("", " ".join(maps))
         if statistics.passes == 0:
             messages.add(depsgraph.scene.name, "was cancelled before the first pass was done; there is no picture.")
+        if statistics.is_limited:
+            _say_what_did_not_fit(depsgraph.scene.name, statistics, messages)
         if settings.stop == Stop.ERROR and session.progress >= 1.0:
             _say_what_was_missed(depsgraph.scene.name, settings, statistics, messages)
         summary = summarize(statistics, messages, time.monotonic() - started, time.process_time() - cpu_started)
@@ -116,6 +127,14 @@ def _render_layer(
         sys.stdout.write(summary.line() + "\n")
         sys.stdout.flush()
     return maps, summary
+
+
+def _say_what_did_not_fit(scene: str, statistics: Statistics, messages: Messages) -> None:
+    messages.add(
+        scene,
+        f"renders passes of {statistics.photon_count:,} photons, for more would not fit into memory.",
+        f"{SPARE} The Memory Limit is in the add-on's preferences.",
+    )
 
 
 def _say_what_was_missed(scene: str, settings: RenderSettings, statistics: Statistics, messages: Messages) -> None:

@@ -31,6 +31,11 @@ def set_quality(settings: PhotonMapsSceneSettings, number: int) -> None:
 class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     """Settings of a scene: ``scene.photon_maps``."""
 
+    settings_version: IntProperty(
+        name="Version",
+        description="Of these settings, so that files of older versions keep their meaning; it takes no time",
+        options={"HIDDEN"},
+    )
     integrator: EnumProperty(
         name="Method",
         description="How light is found. Photon Map is faster wherever light arrives by way of other surfaces",

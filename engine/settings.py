@@ -112,6 +112,7 @@ class RenderSettings:
     use_auto: bool = False  #: photon_count and radius, where 0, follow from pilot passes
     light_samples: int = 0  #: of each light, or choices among many, where photons are asked; 0: 1, or chosen
     keep_photons: bool = False  #: so that they can be read after a pass; costs memory
+    memory_limit: int = 0  #: bytes that scene, picture and photons may take; 0: nine tenths of the machine's
 
     @property
     def stop_error(self) -> float:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import bpy
 
+from .preferences import memory_limit
 from .settings import AUTOMATIC, BrdfDirection, Estimate, Filter, Integrator, PixelFilter, RenderSettings, Stop
 
 #: What Automatic chooses by itself.
@@ -37,6 +38,7 @@ def render_settings(scene: bpy.types.Scene) -> RenderSettings:
     return RenderSettings(
         film_transparent=scene.render.film_transparent,
         threads=scene.render.threads if scene.render.threads_mode == "FIXED" else 0,
+        memory_limit=memory_limit(),
         **{name: ENUMERATIONS[name][value] if name in ENUMERATIONS else value for name, value in values.items()},
         **(AUTOMATIC if user.use_auto else {}),
     )

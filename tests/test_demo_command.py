@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import struct
 import subprocess
 import sys
@@ -62,6 +64,17 @@ def unregister():
 """
 RENDERS_GREY = """self.grey(depsgraph.scene)
         self.say(passes=1, messages=["World: no light", f"Frame: {depsgraph.scene.frame_current}"])"""
+
+#: Of which no file becomes much smaller than it is.
+RENDERS_NOISE = """import numpy
+        size = int(64 * depsgraph.scene.render.resolution_percentage / 100), int(
+            32 * depsgraph.scene.render.resolution_percentage / 100
+        )
+        result = self.begin_result(0, 0, *size)
+        noise = numpy.random.default_rng(1).random(4 * size[0] * size[1], dtype=numpy.float32)
+        result.layers[0].passes["Combined"].rect.foreach_set(noise)
+        self.end_result(result)
+        self.say(passes=1, messages=[])"""
 
 
 def blender(script: str) -> None:
@@ -254,3 +267,35 @@ def test_an_extension_that_cannot_be_enabled_is_named(files, tmp_path):
     assert result.returncode == 1
     assert "broken.zip" in result.stderr.splitlines()[-1]
     assert not (tmp_path / "a.png").exists()
+
+
+@pytest.fixture
+def mounted(tmp_path):
+    """Returns a function that mounts a small file system of its own, with the given options."""
+    folder = tmp_path / "mounted"
+    folder.mkdir()
+
+    def mount(options: str) -> Path:
+        subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", folder], check=True)
+        return folder
+
+    yield mount
+    subprocess.run(["umount", folder], check=False)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts file systems")
+@pytest.mark.parametrize(
+    ("is_full", "said"), [(True, "not rendered|no picture|the beginning"), (False, "not writable")]
+)
+def test_a_full_disk_or_a_folder_that_cannot_be_written_leaves_the_old_picture(stand_in, files, mounted, is_full, said):
+    folder = mounted("size=64k")
+    out = folder / "kept.exr"
+    out.write_text("an older picture")
+    if not is_full:
+        subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
+    result = run(stand_in(RENDERS_NOISE), blend=files / "cube.blend", out=out, size="800%")
+    assert result.returncode == 1
+    (sentence,) = [line for line in result.stderr.splitlines() if line.startswith("render: ")]
+    assert re.search(said, sentence), sentence
+    assert "Traceback" not in result.stderr
+    assert out.read_text() == "an older picture" and len(list(folder.iterdir())) == 1

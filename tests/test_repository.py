@@ -24,6 +24,7 @@ FLOORS = {
     "engine/settings": 1,
     "engine/passes": 1,
     "engine/chart": 2,
+    "engine/preferences": 1,
     "engine/map_choice": 1,
     "engine/messages": 1,
     "engine/session": 1,
@@ -187,3 +188,22 @@ def test_every_source_file_states_its_licence():
         if "SPDX-License-Identifier: GPL-3.0-or-later" not in (ROOT / path).read_text()[:300]
     ]
     assert headless == []
+
+
+def test_the_page_about_tests_names_those_that_there_are():
+    page = (ROOT / "docs/testing.md").read_text()
+    named = re.findall(r"`(tests/[\w/]+\.py)(?:::(\w+))?`", page)
+    assert len(named) > 40
+    for path, name in named:
+        assert (f"def {name}(" if name else "def test_") in (ROOT / path).read_text(), f"{path}::{name}"
+    for program in re.findall(r"`(test_\w+)`", page):
+        assert (ROOT / f"engine/native/tests/{program}.cpp").is_file(), program
+
+
+def test_every_mutation_is_of_what_there_is():
+    sys.path.insert(0, str(ROOT / "tools"))
+    try:
+        import mutate
+    finally:
+        sys.path.pop(0)
+    assert len(mutate.read_table(ROOT / "tools/mutations.toml")) >= 60

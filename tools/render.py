@@ -14,6 +14,8 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
+from whole_picture import is_whole
+
 EXTENSION = "bl_ext.user_default.photon_maps"
 SUMMARY_PREFIX = "photon_maps: "
 FORMATS = {".png": "PNG", ".exr": "OPEN_EXR"}
@@ -117,6 +119,8 @@ def render(request: Request, profile: str) -> None:
         with tempfile.TemporaryDirectory(dir=request.out.parent, prefix=".render-") as folder:
             picture = Path(folder) / request.out.name
             messages = press_f12(scene, picture)
+            if not is_whole(picture):
+                raise RenderFailure(f"only the beginning of {request.out.name} could be written; is the disk full?")
             os.replace(picture, request.out)
         for message in messages:
             print(f"note: {message}")

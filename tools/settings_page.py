@@ -78,6 +78,7 @@ GROUPS = (
             )
         },
     ),
+    Group("PhotonMapsPreferences", "preferences", {"Preferences > Add-ons > Photon Maps": ("memory_limit",)}),
 )
 KINDS = {"BOOLEAN": "on or off", "INT": "whole number", "FLOAT": "number", "ENUM": "choice", "STRING": "text"}
 UNITS = {"LENGTH": "in scene units", "TIME_ABSOLUTE": "in seconds"}
@@ -138,7 +139,12 @@ def page(classes: dict[str, type]) -> str:
     if known != listed:
         raise ValueError(f"GROUPS and the registered classes differ in {known ^ listed}")
     scene = bpy.data.scenes.new("Settings")
-    fresh = SimpleNamespace(scene=scene, view_layer=scene.view_layers[0])
+    preferences = settings_of(classes["PhotonMapsPreferences"])
+    fresh = SimpleNamespace(
+        scene=scene,
+        view_layer=scene.view_layers[0],
+        preferences=SimpleNamespace(**{name: setting.default for name, setting in preferences.items()}),
+    )
     paragraphs = []
     for group in GROUPS:
         settings = settings_of(classes[group.cls])
@@ -156,15 +162,21 @@ def page(classes: dict[str, type]) -> str:
 
 def main() -> int:
     """Register the properties and write the page."""
-    from engine import overlay_properties, properties
+    from engine import overlay_properties, preferences, properties
 
-    classes = (*properties.CLASSES, overlay_properties.PhotonMapsOverlaySettings)
-    for module in (properties, overlay_properties):
+    preferences.PhotonMapsPreferences.bl_idname = "photon_maps"  # here it is of no add-on
+    classes = (
+        *properties.CLASSES,
+        overlay_properties.PhotonMapsOverlaySettings,
+        preferences.PhotonMapsPreferences,
+    )
+    modules = (preferences, properties, overlay_properties)
+    for module in modules:
         module.register()
     try:
         PAGE.write_text(page({cls.__name__: cls for cls in classes}), encoding="utf-8")
     finally:
-        for module in (overlay_properties, properties):
+        for module in reversed(modules):
             module.unregister()
     return 0
 

@@ -76,7 +76,7 @@ def percentage(camera, render):
 
 
 def scaled(camera, render):
-    bpy.data.objects["Camera"].scale = (3.0, 3.0, 3.0)
+    bpy.data.objects["Camera"].scale = (3.0, 1.5, 0.5)
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 6 };
+enum { PM_ABI_VERSION = 7 };
 
 typedef enum pm_status {
     PM_OK = 0,
@@ -144,6 +144,9 @@ typedef struct pm_settings {
                           cost those have in each map, and from the error that the picture is made for */
     uint32_t light_samples; /* of each light, or choices among many, where a camera's path asks the photons; 0: 1, or
                                with use_auto what pilot passes tell */
+    uint64_t memory_limit; /* bytes that scene, picture and photons may take; 0: nine tenths of the machine's. Where the
+                              photons of a pass would take more, fewer are emitted; where the picture would,
+                              pm_render_create returns PM_OUT_OF_MEMORY */
 } pm_settings;
 
 typedef struct pm_statistics {
@@ -183,6 +186,7 @@ typedef struct pm_statistics {
     float done;                   /* share of the picture that gets no further samples */
     uint32_t light_samples;       /* as set or chosen */
     uint64_t photons_stored_last; /* by the latest pass */
+    uint32_t is_limited;          /* 1: passes emit fewer photons than asked for or planned, for the memory_limit */
 } pm_statistics;
 
 typedef struct pm_photon {
@@ -265,7 +269,7 @@ PM_API pm_status pm_scene_set_instances(pm_scene *scene, const pm_instances *ins
 PM_API pm_status pm_scene_add_image(pm_scene *scene, const pm_image *image, uint32_t *index);
 PM_API pm_status pm_scene_add_texture(pm_scene *scene, const pm_texture *texture, uint32_t *index);
 PM_API pm_status pm_scene_add_table(pm_scene *scene, const pm_table *table, uint32_t *index);
-/* Sets the materials, after the textures and tables that they name and before the instances. */
+/* Sets the materials, after the textures and tables that they name and before the instances and the world. */
 PM_API pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *materials, uint64_t count);
 PM_API pm_status pm_scene_set_lights(pm_scene *scene, const pm_light *lights, uint64_t count);
 /* Sets the material whose emission arrives from everywhere outside the scene, by direction (positions are the
@@ -283,10 +287,11 @@ PM_API pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, cons
  * before is left. Photon counts and radii stay those chosen for the first camera, and so does the view that shaders
  * ask for (PM_INPUT_CAMERA_POSITION, PM_INPUT_WINDOW). */
 PM_API pm_status pm_render_set_camera(pm_render *render, const pm_camera *camera);
-/* Keeps the photon maps of the earliest passes in so many bytes at most, so that pictures after pm_render_set_camera()
- * need not trace them again; without a call none is kept. */
+/* Keeps the photon maps of the earliest passes in so many bytes at most, and a quarter of the memory_limit, so that
+ * pictures after pm_render_set_camera() need not trace them again; without a call none is kept. */
 PM_API pm_status pm_render_keep_maps(pm_render *render, uint64_t bytes);
-/* Renders pass `index`, a function of scene, camera, settings and index alone, and adds it to the picture. */
+/* Renders pass `index`, a function of scene, camera, settings and index alone, and adds it to the picture. Where memory
+ * ran out the picture is whole, too; whether it has this pass is told by the passes of pm_statistics. */
 PM_API pm_status pm_render_pass(pm_render *render, uint32_t index);
 /* Makes the running pass, or the next one if none runs, return PM_CANCELLED within 100 ms; the one after that starts
  * afresh. */

@@ -262,3 +262,4 @@ class Statistics:
     done: float  #: share of the picture that gets no further samples
     light_samples: int  #: of each light, or choices among many, at the first diffuse vertices; as set or chosen
     photons_stored_last: int  #: by the latest pass
+    is_limited: int  #: 1: passes emit fewer photons than asked for or planned, for the memory limit

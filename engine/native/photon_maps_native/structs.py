@@ -188,6 +188,7 @@ class PmSettings(SizedStructure):
         ("stop_error", c_float),
         ("use_auto", c_uint32),
         ("light_samples", c_uint32),
+        ("memory_limit", c_uint64),
     ]
 
 
@@ -228,6 +229,7 @@ class PmStatistics(SizedStructure):
         ("done", c_float),
         ("light_samples", c_uint32),
         ("photons_stored_last", c_uint64),
+        ("is_limited", c_uint32),
     ]
 
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "memory_limit.h"
 #include "parallel.h"
 #include "photon_maps.h"
 #include "render.h"
@@ -29,8 +30,10 @@ struct SceneState {
     void freeze() {
         if (lights) return;
         scene.freeze();
-        lights = std::make_unique<Lights>(scene, lamps, world);
-        emission = std::make_unique<Emission>(scene, *lights);
+        // Both or none: there may be no memory left for the second.
+        auto new_lights = std::make_unique<Lights>(scene, lamps, world);
+        emission = std::make_unique<Emission>(scene, *new_lights);
+        lights = std::move(new_lights);
     }
 };
 
@@ -55,6 +58,8 @@ pm_status guarded(Body &&body) noexcept {
         return fail(PM_INVALID_OPERATION, error.what());
     } catch (const std::bad_alloc &) {
         return fail(PM_OUT_OF_MEMORY, "out of memory");
+    } catch (const MemoryLimitExceeded &error) {
+        return fail(PM_OUT_OF_MEMORY, error.what());
     } catch (const std::length_error &error) {
         return fail(PM_OUT_OF_MEMORY, error.what());
     } catch (const Cancelled &error) {

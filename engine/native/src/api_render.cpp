@@ -15,6 +15,10 @@ pm_status pm_render_create(pm_scene *scene, const pm_camera *camera, const pm_se
         pm::validate(*settings);
         if (!scene->state->lights) scene->state->scene.view = pm::to_view(*camera);  // shaders see the first one's
         scene->state->freeze();
+        const auto [x, y, width, height] = std::to_array(camera->region);
+        pm::require_memory(pm::memory_limit_or_usual(settings->memory_limit),
+                           scene->state->scene.memory_bytes() + pm::picture_bytes(width, height, settings->passes),
+                           "the scene and its picture");
         *render =
             std::make_unique<pm_render>(scene->state, pm::to_camera(*camera), pm::to_settings(*settings)).release();
     });
@@ -81,6 +85,7 @@ pm_status pm_render_statistics(const pm_render *render, pm_statistics *statistic
         statistics->photons_emitted = s.photons_emitted;
         statistics->photons_stored = s.photons_stored;
         statistics->photons_stored_last = s.photons_stored_last;
+        statistics->is_limited = render->render.is_limited();
         statistics->rays = s.rays.rays;
         statistics->memory_bytes = s.peak_memory_bytes;
         statistics->radius_first = s.radius_first;

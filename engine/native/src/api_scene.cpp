@@ -91,7 +91,9 @@ pm_status pm_scene_set_materials(pm_scene *scene, const pm_material *materials, 
         pm::require(materials || count == 0, "materials is null");
         pm::validate_count(count, "materials");
         pm::SceneState &state = scene->open();
-        if (!state.scene.instances.empty()) throw pm::InvalidOperation("materials are set before the instances");
+        if (!state.scene.instances.empty() || !state.scene.slot_materials.empty())
+            throw pm::InvalidOperation("materials are set before the instances");
+        if (state.world.material) throw pm::InvalidOperation("materials are set before the world");
         std::vector<pm::Material> converted;
         for (size_t i = 0; i < count; ++i) {
             pm::validate(materials[i], i, state.scene.textures.size(), state.scene.tables.size());

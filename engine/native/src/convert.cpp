@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "convert.h"
 
+#include "memory_limit.h"
 #include "parallel.h"
 
 namespace photon_maps {
@@ -134,6 +135,7 @@ RenderSettings to_settings(const pm_settings &source) {
     settings.stop_error = source.stop_error;
     settings.use_auto = source.use_auto != 0;
     settings.light_samples = source.light_samples;
+    settings.memory_limit = memory_limit_or_usual(source.memory_limit);
     settings.threads = thread_count(source.threads);
     settings.buffers = source.passes;
     return settings;

@@ -45,9 +45,9 @@ DynamicLibrary::Address DynamicLibrary::find(const char *name) const {
 namespace {
 
 // Blender's executable puts its own Embree and TBB into the global scope; without RTLD_DEEPBIND a library would bind to
-// them. The address sanitizer's runtime refuses that flag, and runs in no process with a second Embree. macOS has no
+// them. The sanitizers' runtimes refuse that flag, and run in no process with a second Embree. macOS has no
 // such flag: there a library names those that it binds to.
-#if defined(RTLD_DEEPBIND) && !defined(__SANITIZE_ADDRESS__)
+#if defined(RTLD_DEEPBIND) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | RTLD_DEEPBIND;
 #else
 constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;

@@ -55,6 +55,7 @@ void Film::set(size_t pixel, const PixelSample &sample) {
 }
 
 void Film::add(const Film &pass, const std::vector<bool> &left_out) {
+    if (nested_) nested_->make_room(*pass.nested_);  // all that may fail: a pass is added as a whole
     for (size_t tile = 0; tile < tiles_.count(); ++tile) {
         if (!left_out.empty() && left_out[tile]) continue;
         for (size_t b = 0; b < buffer_count; ++b) {

@@ -42,6 +42,7 @@ class MapCache {
     /// Keeps a pass where there is room for it beside those before it; later ones make way.
     void keep(uint32_t index, std::shared_ptr<const TracedPass> pass);
     size_t memory_bytes() const { return memory_bytes_; }
+    size_t limit() const { return limit_; }
 
   private:
     void make_way();

@@ -43,13 +43,14 @@ void NestedFilm::set(uint32_t x, uint32_t y, const Levels &levels) {
     (*tile)[y % Tiles::side * Tiles::side + x % Tiles::side] = {levels.red, levels.green, levels.blue, levels.variance};
 }
 
+void NestedFilm::make_room(const NestedFilm &pass) {
+    for (size_t tile = 0; tile < tiles_.size(); ++tile)
+        if (pass.tiles_[tile] && !tiles_[tile]) tiles_[tile] = std::make_unique<Tile>();
+}
+
 void NestedFilm::add(const NestedFilm &pass, size_t tile) {
     const std::unique_ptr<Tile> &brought = pass.tiles_[tile];
     if (!brought) return;
-    if (!tiles_[tile]) {
-        tiles_[tile] = std::make_unique<Tile>(*brought);
-        return;
-    }
     for (size_t i = 0; i < brought->size(); ++i) {
         Sums &sums = (*tiles_[tile])[i];
         const Sums &added = (*brought)[i];

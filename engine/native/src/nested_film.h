@@ -25,7 +25,9 @@ class NestedFilm {
 
     /// Sets a pixel to one sample. Different tiles may be set by different threads.
     void set(uint32_t x, uint32_t y, const Levels &levels);
-    /// Adds a tile of a pass: of a film of the same size.
+    /// Makes room for what a pass brought, a film of the same size: adding it needs no more memory then.
+    void make_room(const NestedFilm &pass);
+    /// Adds a tile of a pass that room was made for.
     void add(const NestedFilm &pass, size_t tile);
 
     /// Chooses a radius for every pixel and puts its mean over the passes in the place of the provisional level's.

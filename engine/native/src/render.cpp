@@ -269,12 +269,15 @@ void Render::prepare(RenderStatistics &spent) {
     const Indirect indirect = indirect_;
     const uint32_t light_samples = light_samples_;
     try {
+        limit_counts();
         choose_radii();
         make_plan();
+        limit_counts();
     } catch (...) {  // a render that goes on after a cancel begins here again
         counts_ = counts;
         indirect_ = indirect;
         light_samples_ = light_samples;
+        is_limited_ = false;
         first_radii_.reset();
         throw;
     }

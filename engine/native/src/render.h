@@ -36,6 +36,7 @@ struct RenderSettings {
     bool use_auto;           ///< counts and radii that are 0 follow from pilot passes
     uint32_t light_samples;  ///< as of CameraPass; 0: planned, or 1
     float stop_error;        ///< tiles far below it are left out of further passes; 0: none is
+    size_t memory_limit;     ///< bytes that scene, picture and photons may take
 };
 
 struct RenderStatistics {
@@ -57,8 +58,9 @@ class Render {
 
     /// Begins another picture, seen by another camera: counts and radii stay those chosen for the first one.
     void set_camera(const Camera &camera);
-    /// Keeps pass 1 of the earliest passes in so many bytes, for other pictures; at first none.
-    void keep_maps(size_t bytes) { map_cache_.set_limit(bytes); }
+    /// Keeps pass 1 of the earliest passes in so many bytes, for other pictures, but in no more than a quarter of the
+    /// memory limit; at first none.
+    void keep_maps(size_t bytes) { map_cache_.set_limit(std::min(bytes, settings_.memory_limit / 4)); }
 
     /// Renders a pass, a function of scene, camera, settings and index alone, and adds it to the film.
     /// @throws Cancelled after cancel(); the film then holds the passes finished before
@@ -85,6 +87,8 @@ class Render {
     PhotonCounts photon_counts() const { return counts_; }
     Indirect indirect() const { return indirect_; }
     uint32_t light_samples() const { return light_samples_; }
+    /// Whether passes emit fewer photons than was asked for or planned, for more would not fit into memory.
+    bool is_limited() const { return is_limited_; }
     /// What the plan was made from; zero before the first pass or without a plan.
     const PilotNoise &pilot_noise() const { return pilot_noise_; }
 
@@ -110,6 +114,7 @@ class Render {
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     std::vector<PhotonTracing> tracings(uint32_t index) const;
     bool is_planned() const;
+    void limit_counts();
     void choose_radii();
     void set_radii(Radii radii);
     void make_plan();
@@ -144,6 +149,7 @@ class Render {
     Indirect indirect_;
     uint32_t light_samples_;
     PhotonCounts counts_;
+    bool is_limited_ = false;
     PilotNoise pilot_noise_;
     std::vector<FeatureEdge> kernel_bounds_;  ///< of the scene, while radii are chosen
     std::optional<Radii> first_radii_;        ///< of pass 0, once chosen

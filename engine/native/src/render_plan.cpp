@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a render decides before its first pass: the radii, and the photons of a pass.
 #include "crossing_edges.h"
+#include "memory_limit.h"
 #include "parallel.h"
 #include "radius.h"
 #include "render.h"
+#include "sequence.h"
 
 namespace photon_maps {
 
@@ -21,6 +23,33 @@ constexpr float pilot_radius = 1.41f;
 bool Render::is_planned() const {
     return settings_.use_auto && settings_.photon_count == 0 && !(settings_.kernel.radius > 0) &&
            settings_.integrator == Integrator::photon_map;
+}
+
+/// Lets a pass emit no more photons than what it stores has room for in memory.
+void Render::limit_counts() {
+    const size_t taken =
+        scene_.memory_bytes() + picture_bytes(camera_.width, camera_.height, settings_.buffers) + map_cache_.limit();
+    const bool has_copies = settings_.keep_photons || indirect_ == Indirect::gather;
+    const double room = photons_with_room(settings_.memory_limit, taken, has_copies);
+    // Seldom is a photon stored so many times; where even then there is room, nothing more needs to be known.
+    constexpr double often_stored = 256;
+    if (often_stored * (static_cast<double>(counts_.global) + static_cast<double>(counts_.caustic)) <= room) return;
+
+    // Pilot photons tell how many are stored for each that both maps emit.
+    constexpr uint64_t most_pilot_photons = 1 << 14;
+    constexpr uint32_t room_stream = 0x726f6f6d;
+    double stored = 0;
+    for (const PhotonPurpose purpose : {PhotonPurpose::global, PhotonPurpose::caustic}) {
+        if (!traces(purpose)) continue;
+        PhotonTracing pilot = tracing(purpose, 0);
+        pilot.count = std::min(pilot.count, most_pilot_photons);
+        pilot.seed = hash(pilot.seed, room_stream);
+        stored += static_cast<double>(trace_photons(scene_, emission_, pilot, &cancel_).size()) /
+                  static_cast<double>(pilot.count);
+    }
+    const auto most = static_cast<uint64_t>(stored > 0 ? std::clamp(room / stored, 1.0, 0x1p62) : 0x1p62);
+    is_limited_ = is_limited_ || std::max(counts_.global, counts_.caustic) > most;
+    counts_ = {std::min(counts_.global, most), std::min(counts_.caustic, most)};
 }
 
 void Render::choose_radii() {

@@ -150,6 +150,19 @@ void check_footprints(test::Checks &checks) {
     }
 }
 
+/// Samples of a pixel filter lie about its middle, as wide as the filter reaches.
+void check_pixel_filters(test::Checks &checks) {
+    for (const auto &[filter, reach] : {std::pair{PixelFilter::box, 1.0}, std::pair{PixelFilter::gaussian, 3.0},
+                                        std::pair{PixelFilter::blackman_harris, 2.0}}) {
+        constexpr float width = 1.5f;
+        const PixelSampler sampler(filter, width);
+        const Vec2 middle = sampler.sample(0.5f, 0.5f), lowest = sampler.sample(0, 0), highest = sampler.sample(1, 1);
+        checks.near(double{middle.x}, 0, 0.01, "a pixel filter lies about its middle");
+        checks.near(double{lowest.x + highest.x}, 0, 0.01, "a pixel filter is the same on both sides");
+        checks.that(double{highest.y} <= reach * double{width} / 2 + 1e-6, "a pixel filter ends where it should");
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -160,5 +173,6 @@ int main() {
         check_focus(checks, type);
     check_panorama(checks);
     check_footprints(checks);
+    check_pixel_filters(checks);
     return checks.report();
 }

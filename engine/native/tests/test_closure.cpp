@@ -251,6 +251,43 @@ void check_reciprocity(Checks &checks) {
     }
 }
 
+/// What a rough diffuse surface is said to scatter is what its samples bring, further scatterings among them.
+void check_rough_diffuse_albedo(Checks &checks) {
+    for (const float roughness : {0.3f, 1.0f}) {
+        const Shading shading =
+            seen({"diffuse", [](Shading &s, float r, Vec3 n) { add_diffuse(s, white * 0.9f, r, n); }}, roughness,
+                 direction(40));
+        constexpr int side = 128;
+        double sum = 0;
+        for (int i = 0; i < side * side; ++i) {
+            const float u = (static_cast<float>(i % side) + 0.5f) / side,
+                        v = (static_cast<float>(i / side) + 0.5f) / side;
+            const auto drawn = sample(shading, all_lobes, {u, v, 0.5f}, Transport::radiance);
+            if (drawn) sum += double{drawn->weight.y};
+        }
+        checks.near(double{albedo(shading, all_lobes).y}, sum / (side * side), 0.01, "the albedo of rough diffuse");
+    }
+}
+
+/// Two mirrors in one surface, of which a sample takes one: on the mean both reflect their share.
+void check_mixed_mirrors(Checks &checks) {
+    Shading shading = seen({"two mirrors",
+                            [](Shading &s, float r, Vec3 n) {
+                                add_glossy(s, white * 0.3f, r, n, false);
+                                add_glossy(s, white * 0.5f, r, n, false);
+                            }},
+                           0, direction(30));
+    constexpr int count = 1000;
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+        const float u = (static_cast<float>(i) + 0.5f) / count;
+        const auto drawn = sample(shading, all_lobes, {0.5f, 0.5f, u}, Transport::radiance);
+        checks.that(drawn && drawn->is_singular, "a mirror is drawn");
+        if (drawn) sum += double{drawn->weight.x};
+    }
+    checks.near(sum / count, 0.8, 0.005, "mirrors reflect their shares together");
+}
+
 }  // namespace
 
 int main() {
@@ -258,5 +295,7 @@ int main() {
     check_all_sampling(checks);
     check_energy(checks);
     check_reciprocity(checks);
+    check_mixed_mirrors(checks);
+    check_rough_diffuse_albedo(checks);
     return checks.report();
 }

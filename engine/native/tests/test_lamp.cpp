@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lamps: directions follow the density that a ray which meets the lamp is told, and bring the irradiance of the closed
 // form.
+#include "lamp.h"
 #include "light_checks.h"
 
 using namespace photon_maps;
@@ -148,9 +149,26 @@ void check_lamps_in_a_row(Checks &checks) {
 
 }  // namespace
 
+namespace {
+
+/// A spot fades from its edge by a smooth step in the cosine, over the share `spot_blend` of the cone.
+void check_spot_blend(Checks &checks) {
+    const Lamp spot = lamp_above(LightType::spot, 1, 0);
+    const Frame frame(-normalize(spot.transform.z));
+    const float edge = 1 - std::cos(spot.spot_angle / 2), fade = edge * spot.spot_blend;
+    for (const float s : {0.0f, 0.1f, 0.25f, 0.6f, 1.0f}) {
+        const float cosine = 1 - (edge - s * fade), sine = std::sqrt(1 - cosine * cosine);
+        checks.near(double{attenuation(spot, frame.to_world({sine, 0, cosine}))}, double{s * s * (3 - 2 * s)}, 1e-3,
+                    "a spot fades by a smooth step");
+    }
+}
+
+}  // namespace
+
 int main() {
     Checks checks;
     check_lamps(checks);
+    check_spot_blend(checks);
     check_lamps_in_a_row(checks);
     return checks.report();
 }
