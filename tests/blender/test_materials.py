@@ -62,6 +62,26 @@ def test_diffuse_and_emission(read):
     close(closure.arguments[0], (2.0, 4.0, 1.0))
 
 
+@pytest.mark.parametrize(
+    ("node", "socket"),
+    [
+        ("BsdfDiffuse", "Color"),
+        ("BsdfGlass", "Color"),
+        ("BsdfMetallic", "Base Color"),
+        ("BsdfPrincipled", "Base Color"),
+    ],
+)
+def test_a_colour_above_one_is_named(read, node, socket):
+    if not hasattr(bpy.types, f"ShaderNode{node}"):
+        pytest.skip("this Blender has no such node")
+    for brightest, expected in ((1.0, 0), (1.5, 1)):
+        tree = Tree("Snow")
+        tree.surface(tree.add(node, **{socket: (0.2, brightest, 0.3, 1.0)}))
+        _, messages = read(tree.material)
+        assert len(messages) == expected
+        assert all("Snow" in message and "has a colour above 1" in message for message in messages), messages
+
+
 def test_every_input_of_principled(read):
     names = {
         PrincipledArgument.METALLIC: "Metallic",
