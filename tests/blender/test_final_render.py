@@ -155,11 +155,11 @@ def test_pictures_on_the_way_are_shown_to_who_looks_on(corner, monkeypatch):
     corner.photon_maps.passes = 4
     expected = render(corner)["Combined"]
     pushed = []
-    original = final_render._Picture.show
+    original = final_render.RenderResult.show
     monkeypatch.setattr(final_render, "SHOW_SECONDS", 0.0)
     monkeypatch.setattr(final_render, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
     monkeypatch.setattr(
-        final_render._Picture,
+        final_render.RenderResult,
         "show",
         lambda self, session, *rest: (pushed.append(session.statistics().passes), original(self, session, *rest)),
     )

@@ -179,11 +179,10 @@ bool CameraPath::go_on(const SurfacePoint &hit, const Shading &shading) {
     const std::array<float, 4> rest{u[0], u[1], u[2], left};
     if (!is_glossy) return scatter(hit, shading, diffuse_lobes, chosen, rest);
     if (!splits_) return scatter(hit, shading, glossy_lobes, chosen, rest);
-    // Refraction first: it mostly brings more, so its random numbers are to be as even as without the other.
     CameraPath reflected = *this;
-    if (scatter(hit, shading, glossy_transmission, chosen, rest)) follow();
+    reflected.sequence_ = sequence_.branch();
     if (reflected.scatter(hit, shading, glossy_reflection, chosen, rest)) reflected.follow();
-    return false;
+    return scatter(hit, shading, glossy_transmission, chosen, rest);
 }
 
 /// Goes on through a transparent surface.
@@ -231,7 +230,7 @@ bool CameraPath::survives(Vec3 weight, float u) {
     return true;
 }
 
-PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, const Sequence &sequence,
                               RayCounts &counts, Levels *levels) {
     PixelSample sample;
     CameraPath(pass, ray, is_probe, sequence, counts, levels, sample).follow();

@@ -39,7 +39,7 @@ namespace photon_maps {
 /// @param counts is raised by the rays that were traced
 /// @param levels may be null; else the caustic map is asked by nested radii, and what they bring is added here. The
 /// sample has it by one of them
-PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence,
+PixelSample trace_camera_path(const CameraPass &pass, const Ray &ray, bool is_probe, const Sequence &sequence,
                               RayCounts &counts, Levels *levels);
 
 }  // namespace photon_maps

@@ -18,7 +18,7 @@ constexpr size_t few_sources = 8;
 /// The steps of one path. Those that ask the lights are in path_lights.cpp, the others in camera_path.cpp.
 class CameraPath {
   public:
-    CameraPath(const CameraPass &pass, const Ray &ray, bool is_probe, Sequence &sequence, RayCounts &counts,
+    CameraPath(const CameraPass &pass, const Ray &ray, bool is_probe, const Sequence &sequence, RayCounts &counts,
                Levels *levels, PixelSample &sample)
         : pass_(pass),
           is_probe_(is_probe),
@@ -97,7 +97,7 @@ class CameraPath {
 
     const CameraPass &pass_;
     bool is_probe_;
-    Sequence &sequence_;
+    Sequence sequence_;
     RayCounts &counts_;
     Levels *levels_;  ///< of the caustic map; null: it is asked by one radius
     PixelSample &sample_;

@@ -42,6 +42,8 @@ class Sequence {
     Points points(uint32_t count) { return {index_ * count, hash(seed_, group_++)}; }
     /// The next four numbers in [0, 1).
     std::array<float, 4> next() { return sobol4(index_, hash(seed_, group_++)); }
+    /// A sequence of its own for what goes another way from here: neither hangs on how many numbers the other takes.
+    Sequence branch() { return {index_, hash(seed_, group_++)}; }
 
   private:
     uint64_t index_;
