@@ -197,7 +197,7 @@ calibration: build/native/stamp .venv/chart.stamp
 sweep: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.sweep_bench $(SWEEP)
 
-# Draws build/chart/prediction.png of docs/chart_of_a_scene.md.
+# Draws build/chart/prediction.png.
 prediction: build/native/stamp .venv/chart.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)
 
