@@ -13,6 +13,7 @@ import bpy
 from .final_render import RenderResult, step_until_done
 from .messages import Messages
 from .passes import PASSES
+from .preferences import memory_limit
 from .settings import Estimate, RenderSettings
 
 #: The same for every preview, for the preview scene has no settings of a user's. Passes go on from coarse to fine.
@@ -45,7 +46,11 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> N
     if scene is None:
         return
     combined = PASSES[:1]
-    settings = replace(SETTINGS, film_transparent=depsgraph.scene_eval.render.film_transparent)
+    settings = replace(
+        SETTINGS,
+        film_transparent=depsgraph.scene_eval.render.film_transparent,
+        memory_limit=memory_limit(),
+    )
     with Session(scene, settings, frozenset(info.buffer for info in combined)) as session:
         picture = RenderResult(engine, depsgraph.view_layer_eval.name, scene.camera.region[2:], combined)
         step_until_done(engine, session, picture)

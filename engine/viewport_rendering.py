@@ -22,10 +22,8 @@ from .settings import Integrator, RenderSettings
 
 COARSE_SECONDS = 0.1  #: that a first picture should take, once there are photon maps
 FINE_SECONDS = 1.0  #: that the step to all pixels may take; before longer ones there are pictures in between
-COARSEST, USUAL = (
-    16,
-    8,
-)  #: pixels of the finest picture across one of a first picture: at most, and while the cost is not known
+#: Pixels of the finest picture across one of a first picture: at most, and while the cost is not known.
+COARSEST, USUAL = 16, 8
 SHOW_SECONDS = 0.25  #: between two pictures of the same view
 MAP_BYTES = 256 << 20  #: of photon maps that are kept for other views
 LOOK_PHOTONS = 1 << 15  #: of a first look at an edit, for each map

@@ -17,6 +17,10 @@ from .accuracy import Reference
 from .curve import Curve, Point, usable
 from .ladder import Size, Variant
 
+#: The square of the blur's error over what is seen of it beside a reference whose kernels have half the radius, if that
+#: error goes with the square of the radius: as in the engine's own estimate of its error.
+UNSEEN_BLUR = (4.0 / 3.0) ** 2
+
 
 @dataclass(frozen=True)
 class Scaling:
@@ -26,11 +30,6 @@ class Scaling:
     pixels: float  #: their number, full over small
     noise: float = 1.0  #: variance of a pass, full over small
     cost: float = 1.0  #: CPU time of a pass as measured, over that reckoned from the small picture
-
-
-#: The square of the blur's error over what is seen of it beside a reference whose kernels have half the radius, if that
-#: error goes with the square of the radius: as in the engine's own estimate of its error.
-UNSEEN_BLUR = (4.0 / 3.0) ** 2
 
 
 def blur_ratio(photons: float) -> float:

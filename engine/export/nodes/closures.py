@@ -43,17 +43,17 @@ LEFT_OUT = {
 }
 
 
-def _color(compiler: Compiler, node: bpy.types.Node, identifier: str = "Color") -> Register:
-    """Return the share of the light that is scattered, by colour; the helper clamps it to 1."""
-    color = compiler.value(node, identifier)
+def _name_brightness(compiler: Compiler, node: bpy.types.Node, color: Register) -> None:
+    """Name a colour by which more light would be scattered than arrives: the helper clamps that."""
     value = compiler.known(color)
     if value is not None and (value > 1.0).any():
         compiler.name(node, "has a colour above 1; it scatters no more light than arrives.", "Use values up to 1.")
-    return color
 
 
 def _colored(compiler: Compiler, node: bpy.types.Node, weight: Register, identifier: str = "Color") -> Register:
-    return compiler.multiply(weight, _color(compiler, node, identifier))
+    color = compiler.value(node, identifier)
+    _name_brightness(compiler, node, color)
+    return compiler.multiply(weight, color)
 
 
 def _name_left_out(compiler: Compiler, node: bpy.types.Node) -> None:
@@ -124,8 +124,9 @@ def _metallic(compiler: Compiler, node: bpy.types.Node, weight: Register) -> Non
     _name_left_out(compiler, node)
     is_f82 = node.fresnel_type == "F82"
     names = ("Base Color", "Edge Tint") if is_f82 else ("IOR", "Extinction")
-    first = _color(compiler, node, names[0]) if is_f82 else compiler.value(node, names[0])
-    arguments = [first, *(compiler.value(node, name) for name in (names[1], "Roughness"))]
+    arguments = [compiler.value(node, name) for name in (*names, "Roughness")]
+    if is_f82:
+        _name_brightness(compiler, node, arguments[0])
     option = _distribution(compiler, node)
     operation = Op.METALLIC if is_f82 else Op.CONDUCTOR
     compiler.closure(operation, weight, *arguments, compiler.normal(node), option=option)
@@ -133,7 +134,8 @@ def _metallic(compiler: Compiler, node: bpy.types.Node, weight: Register) -> Non
 
 def _glass(compiler: Compiler, node: bpy.types.Node, weight: Register) -> None:
     _name_left_out(compiler, node)
-    arguments = [_color(compiler, node), *(compiler.value(node, name) for name in ("Roughness", "IOR"))]
+    arguments = [compiler.value(node, name) for name in ("Color", "Roughness", "IOR")]
+    _name_brightness(compiler, node, arguments[0])
     compiler.closure(Op.GLASS, weight, *arguments, compiler.normal(node), option=_distribution(compiler, node))
 
 
@@ -157,7 +159,7 @@ def _principled(compiler: Compiler, node: bpy.types.Node, weight: Register) -> N
         compiler.normal(node, name) if absent is None else compiler.value(node, name, absent)
         for name, absent in PRINCIPLED.items()
     ]
-    arguments[0] = _color(compiler, node, "Base Color")
+    _name_brightness(compiler, node, arguments[0])
     shine = compiler.multiply(compiler.value(node, "Emission Color"), compiler.value(node, "Emission Strength"))
     option = _distribution(compiler, node)
     compiler.closure(Op.PRINCIPLED, weight, *arguments, compiler.radiance(node, shine), option=option)

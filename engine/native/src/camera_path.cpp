@@ -146,15 +146,16 @@ void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shad
 /// Shares the ways to go on by what they bring.
 void CameraPath::plan(const SurfacePoint &hit, const Shading &shading) {
     const float straight = average(shading.transparency);
-    const float glossy = average(albedo(shading, glossy_lobes));
+    const float reflected = average(albedo(shading, glossy_reflection));
+    const float transmitted = average(albedo(shading, glossy_transmission));
+    const float glossy = reflected + transmitted;
     const float diffuse = goes_on_diffusely() ? average(albedo(shading, diffuse_lobes)) : 0;
     const float sum = straight + glossy + diffuse;
     const float scale = sum > 0 ? 1 / sum : 0;
     go_straight_ = straight * scale;
     go_glossy_ = glossy * scale;
     go_diffuse_ = diffuse * scale;
-    splits_ = word_.length < whole_scatterings && average(albedo(shading, glossy_reflection)) > 0 &&
-              average(albedo(shading, glossy_transmission)) > 0;
+    splits_ = word_.length < whole_scatterings && reflected > 0 && transmitted > 0;
     guide_.reset();
     if (!pass_.importance || go_diffuse_ <= 0) return;
     const auto u = sequence_.next();

@@ -105,6 +105,8 @@ class Render {
     /// Kernel radii of a pass; 0 where there is no such map.
     struct Radii {
         float indirect = 0, caustic = 0;
+
+        bool operator==(const Radii &) const = default;
     };
 
     bool traces(PhotonPurpose purpose) const;

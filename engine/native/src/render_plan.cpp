@@ -81,6 +81,7 @@ void Render::choose_radii() {
 
 /// Takes kernels for the first pass, and finds the edges and the bends that they meet.
 void Render::set_radii(Radii radii) {
+    if (first_radii_ == radii) return;
     // A radius of the engine's own choice is no larger than lets a kernel meet a bearable number of edges.
     const bool is_chosen = !(settings_.kernel.radius > 0);
     Kernel largest = settings_.kernel;
