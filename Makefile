@@ -55,7 +55,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo beside seed chart limits prediction calibration sweep package package-twice \
+.PHONY: help demo beside seed chart limits prediction calibration scale sweep package package-twice \
     $(PLATFORMS:%=package-twice-%) test built-checks test-native test-python test-gui test-versions test-first-render \
     test-wine test-campaign soak mutate lint format bench docs clean
 
@@ -77,6 +77,7 @@ help:
 	@echo 'make prediction    the time that the chart of a scene foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
 	@echo 'make sweep     Automatic beside the best of many settings by hand: [SWEEP="--scenes gap"]'
+	@echo 'make scale     the time of scenes a thousand times smaller and larger: [SCALE="--scenes hall8"]'
 	@echo 'make limits    how and how badly the method fails, 15 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender on Linux, Windows and macOS, in dist'
@@ -193,6 +194,9 @@ beside: $(ZIP) .venv/system.stamp
 # Draws build/chart/calibration.png of docs/error.md.
 calibration: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.calibration_bench $(CALIBRATION)
+
+scale: build/native/stamp .venv/chart.stamp .venv/test.stamp
+	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.scale_bench $(SCALE)
 
 sweep: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.sweep_bench $(SWEEP)

@@ -23,9 +23,9 @@ from engine.capture import Captured, capture
 from engine.chart.accuracy import Reference
 from engine.chart.curve import Curve
 from engine.chart.job import ChartJob, Task
-from engine.chart.ladder import PRESENT, Size, Variant, reference_settings
+from engine.chart.ladder import PRESENT, Variant, reference_settings
 from engine.chart.outcome import Chart
-from engine.chart.run import Run, Scaling, rgb
+from engine.chart.run import Run, Scaling, rgb, size_of
 from engine.session import LoadedScene, Session
 
 OUT = Path("build/chart")
@@ -110,8 +110,7 @@ def render_full(captured: Captured, target: float, limit: float) -> Curve:
     with LoadedScene(captured.data) as scene:
         with Session(scene, captured.settings) as session:
             session.step()
-            count = session.statistics().photon_count
-        size = Size(0, count, 0.0)
+            size = size_of(0, session)
         halves = [Session(scene, reference_settings(captured.settings, size, size, half)) for half in (2, 3)]
         started = time.process_time()
         while time.process_time() - started < limit:

@@ -21,6 +21,8 @@ from engine.chart.ladder import PRESENT, Size, Variant, build_ladder
 from engine.chart.outcome import TARGETS, Cancelled, ChartError, choices, settings_of
 from engine.chart.report import report
 from engine.chart.words import count, duration, percent
+from engine.passes import Pass
+from engine.session import LoadedScene, Session
 from engine.settings import AUTOMATIC, Estimate, Integrator, RenderSettings, Stop
 from tests.shapes import camera, lamp, quad, scene
 from tests.test_indirect_choice import field
@@ -136,17 +138,29 @@ def test_variants_at_both_sizes_have_as_many_photons_in_a_kernel():
 
 
 @pytest.mark.parametrize("region", [(0, 0, 1920, 1080), (300, 200, 700, 800), (5, 5, 40, 30)])
-def test_the_small_camera_sees_the_same(region):
+def test_the_small_picture_is_a_sample_of_the_full_ones_pixels(region):
     full = replace(camera((0, 0, 5), (0, 0, 0), (1920, 1080)), region=region)
     small = small_camera(full)
     x, y, width, height = small.region
-    assert width * height <= 1.05 * SMALL_PIXELS
-    for axis, (low, size) in enumerate(((x, width), (y, height))):
-        factor = small.resolution[axis] / full.resolution[axis]
-        assert abs(low - factor * region[axis]) <= 1.0
-        assert abs(low + size - factor * (region[axis] + region[axis + 2])) <= 1.0
-        assert low + size <= small.resolution[axis]
-    assert small.window == full.window and np.array_equal(small.transform, full.transform)
+    assert width * height <= SMALL_PIXELS
+    assert width * height > SMALL_PIXELS / 2 or small.stride == 1
+    assert (x, y) == region[:2]
+    for size, whole in ((width, region[2]), (height, region[3])):
+        assert 0 <= whole - ((size - 1) * small.stride + 1) < small.stride
+    assert replace(small, region=full.region, stride=1) == full
+
+
+def test_its_pixels_are_those_of_the_full_picture():
+    scene = corner()
+    full = replace(scene.camera, resolution=(40, 30), region=(3, 2, 33, 27))
+    every = replace(full, region=(3, 2, 11, 9), stride=3)
+    with LoadedScene(scene) as loaded:
+        pictures = []
+        for seen in (full, every):
+            with Session(loaded, RenderSettings(use_auto=True), camera=seen) as session:
+                session.step()
+                pictures.append(session.read(Pass.COMBINED).copy())
+    assert np.array_equal(pictures[0][::3, ::3], pictures[1])
 
 
 def test_a_canvas_shows_its_marks():
@@ -171,7 +185,7 @@ def test_a_chart_of_a_small_scene():
     passes = [prediction.passes for prediction in foretold if prediction]
     assert passes == sorted(passes) and all(prediction.cpu_seconds > 0.0 for prediction in foretold if prediction)
     # The picture is so small that it is its own small picture: what is foretold of noise and time is what is measured.
-    assert chart.full.resolution == chart.small_resolution
+    assert chart.stride == 1
     assert present.curve.points[0].error == pytest.approx(present.curve.points[0].small_error, rel=0.05)
     for choice in choices(chart):
         made = settings_of(choice)

@@ -20,10 +20,10 @@ from .ladder import PRESENT, Ladder, Size, Variant, build_ladder, loses_light, r
 from .outcome import Cancelled, Chart, ChartError, FullSize, Row
 from .run import Run, Scaling, rgb, size_of
 
-SMALL_PIXELS = 20480  #: of the small picture: about 160 x 128
+SMALL_PIXELS = 20480  #: of the small picture at most
 #: Photons in a pass of the small picture: as many as the full one has, so that the blur is the same; more would take
 #: too long.
-MOST_PHOTONS = 1 << 17
+MOST_PHOTONS = 1 << 18
 #: When which part ends, as shares of the time.
 FULL_END, REFERENCE_END, LADDER_END = 0.25, 0.55, 0.95
 FULL_PASSES = 3  #: one to prepare, two to measure
@@ -96,7 +96,9 @@ class ChartJob:
             scene = stack.enter_context(LoadedScene(self._task.data))
             full = self._render_full(scene, time.process_time() - cpu_started)
             self.phase = "Reference"
-            small = Size(_pixels(camera), min(full.size.photon_count, MOST_PHOTONS), 0.0)
+            # Which light photons bring is Automatic's choice alone, so where it takes paths it chooses all.
+            count = full.size.photon_count if full.size.by_paths else min(full.size.photon_count, MOST_PHOTONS)
+            small = replace(full.size, pixels=_pixels(camera), photon_count=count)
             asked = [reference_settings(self._base, full.size, small, half) for half in (0, 1)]
             halves = [stack.enter_context(Session(scene, settings, camera=camera)) for settings in asked]
             reference = self._render_reference(halves)
@@ -158,7 +160,7 @@ class ChartJob:
 
         present = started(Variant(PRESENT, loses_light=loses_light(self._base, seen)))
         present.step(self._step)
-        # The reference has four times the photons, so half the radius.
+        # Where the reference's is the engine's choice, it has four times the photons, so half the radius.
         radius = size_of(small.pixels, present.session).radius or 2.0 * size_of(small.pixels, half).radius
         small = replace(small, radius=radius)
         ladder = build_ladder(self._base, seen, bool(self._task.data.lights))
@@ -182,7 +184,7 @@ class ChartJob:
             scene=self._task.name,
             present=self._task.settings,
             full=FullSize(self._task.data.camera.region[2:], full.passes, full.setup_seconds, full.wall_per_cpu),
-            small_resolution=camera.region[2:],
+            stride=camera.stride,
             reference_error=math.sqrt(reference.own_square),
             reference_passes=sum(half.statistics().passes for half in halves),
             rows=rows,
@@ -232,13 +234,15 @@ def _called_after(seconds: float, call: Callable[[], None]) -> Iterator[None]:
 
 
 def small_camera(camera: Camera) -> Camera:
-    """Return the camera of the small picture: the same view and border with about SMALL_PIXELS pixels, or fewer."""
-    x, y, width, height = camera.region
-    factor = min(1.0, math.sqrt(SMALL_PIXELS / (width * height)))
-    left, bottom = math.floor(x * factor), math.floor(y * factor)
-    right, top = max(left + 1, round((x + width) * factor)), max(bottom + 1, round((y + height) * factor))
-    frame = tuple(max(round(size * factor), end) for size, end in zip(camera.resolution, (right, top), strict=True))
-    return replace(camera, resolution=frame, region=(left, bottom, right - left, top - bottom))
+    """Return the camera of the small picture: some of the full one's pixels, evenly spread, SMALL_PIXELS at most.
+
+    As they are the full picture's own, they show noise, and caustics finer than their distance, as that has them.
+    """
+    x, y, *sides = camera.region
+    stride = max(1, math.isqrt(math.prod(sides) // SMALL_PIXELS))
+    while math.prod(-(-side // stride) for side in sides) > SMALL_PIXELS:
+        stride += 1
+    return replace(camera, region=(x, y, *(-(-side // stride) for side in sides)), stride=stride)
 
 
 def _pixels(camera: Camera) -> int:
@@ -259,6 +263,7 @@ def _scaling(full: _Full, small: Size, present: Run) -> Scaling:
         reckoned = reckoned[1 : 1 + len(full.seconds)] if len(reckoned) > 1 and full.passes > 1 else reckoned[:1]
         if reckoned.mean() > 0.0:
             scaling = replace(scaling, cost=float(np.mean(full.seconds)) / float(reckoned.mean()))
-    if full.noise and _noise(present.first_two):
+    # As many photons make as much noise in the pixels that both have.
+    if scaling.photons > 1.0 and full.noise and _noise(present.first_two):
         scaling = replace(scaling, noise=full.noise / _noise(present.first_two))
     return scaling

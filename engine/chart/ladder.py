@@ -27,8 +27,8 @@ class Size:
     pixels: int  #: that are rendered
     photon_count: int  #: of a pass with the present settings
     radius: float  #: of the first pass with the present settings, scene units; 0: no photon map
-    by_paths: bool = False  #: Automatic has paths bring indirect light
     light_samples: int = 0  #: with the present settings
+    by_paths: bool = False  #: Automatic has paths bring indirect light
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,12 @@ class Variant:
 
     def small_settings(self, base: RenderSettings, full: Size, small: Size) -> RenderSettings:
         """Return the settings of a small picture with as many photons in a kernel as the full one has."""
-        made = self.settings(base, small)
-        if base.use_auto and full.by_paths and self._is_automatic:
-            return replace(made, pass_offset=0)  # there, too, the plan takes paths
+        made = replace(self.settings(base, small), pass_offset=0)
+        if full.photon_count == small.photon_count:
+            return made
         return replace(
             made,
             use_auto=False,
-            pass_offset=0,
             photon_count=max(1, round(self.photons * small.photon_count)),
             light_samples=full.light_samples,
             radius=small_radius(base, full, small) if self.radius is None else self.radius * small.radius,
@@ -188,13 +187,15 @@ def loses_light(settings: RenderSettings, seen: Statistics) -> bool:
 
 
 def reference_settings(base: RenderSettings, full: Size, size: Size, half: int) -> RenderSettings:
-    """Return the settings of one half of the reference: photon maps with all light and kernels of half the radius.
+    """Return the settings of one half of the reference: photon maps with all light, and a quarter of the radius.
 
-    Where the radius is the engine's choice, four times the photons make it half, so that a quarter of the blur is left.
+    Where no radius is known, or Automatic has chosen one for caustics alone, four times the photons halve the engine's.
     """
+    radius = 0.0 if full.by_paths else full.radius * math.sqrt(full.photon_count / size.photon_count)
     return RenderSettings(
         photon_count=4 * size.photon_count,
-        radius=small_radius(base, full, size) / 2 if base.use_auto else 0.0,
+        radius=radius / 4,
+        estimate=Estimate.ADAPTIVE,  # its nested radii serve caustics sharper than the radius was chosen for
         max_bounces=base.max_bounces,
         seed=base.seed + 1 + half,
         pixel_filter=base.pixel_filter,

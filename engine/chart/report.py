@@ -16,7 +16,7 @@ def report(chart: Chart) -> str:
 
 def _heading(chart: Chart) -> list[str]:
     width, height = chart.full.resolution
-    small = "{} x {}".format(*chart.small_resolution)
+    pixels = "all of its pixels" if chart.stride == 1 else f"one of each {chart.stride} x {chart.stride} of its pixels"
     measured = (
         f"The first {count(chart.full.passes, 'pass')} of it were rendered to measure their time and noise."
         if chart.full.passes
@@ -26,7 +26,7 @@ def _heading(chart: Chart) -> list[str]:
         f"Speed vs Accuracy: {chart.scene}",
         "",
         f"All times are of the picture at {width} x {height}. {measured}",
-        f"The variants were rendered at {small}. The reference is {count(chart.reference_passes, 'pass')} of photon",
+        f"The variants rendered {pixels}. The reference is {count(chart.reference_passes, 'pass')} of photon",
         "maps with four times the photons and other random numbers. Its own error of about",
         f"{percent(chart.reference_error)} is taken off the errors below.",
     ]

@@ -17,9 +17,9 @@ from .accuracy import Reference
 from .curve import Curve, Point, usable
 from .ladder import Size, Variant
 
-#: The square of the blur's error over what is seen of it beside a reference whose kernels have half the radius, if that
-#: error goes with the square of the radius: as in the engine's own estimate of its error.
-UNSEEN_BLUR = (4.0 / 3.0) ** 2
+#: The square of the blur's error over what is seen of it beside a reference whose kernels have a quarter of the radius,
+#: if that error goes with the square of the radius.
+UNSEEN_BLUR = (16.0 / 15.0) ** 2
 
 
 @dataclass(frozen=True)
@@ -150,4 +150,4 @@ def size_of(pixels: int, session: Session) -> Size:
     count = statistics.photon_count or statistics.caustic_photon_count
     radius = statistics.radius_first or statistics.caustic_radius_first
     by_paths = statistics.indirect in (Indirect.PATHS, Indirect.ALL_PATHS)
-    return Size(pixels, count, radius, by_paths, statistics.light_samples)
+    return Size(pixels, count, radius, statistics.light_samples, by_paths)

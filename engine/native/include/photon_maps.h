@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PM_ABI_VERSION = 7 };
+enum { PM_ABI_VERSION = 8 };
 
 typedef enum pm_status {
     PM_OK = 0,

@@ -171,7 +171,8 @@ typedef struct pm_camera {
     float window[4];        /* left, right, bottom, top of the whole frame on the plane z = -1
                                (perspective), in scene units (orthographic) or in radians */
     uint32_t resolution[2]; /* of the whole frame */
-    uint32_t region[4];     /* x, y, width, height of what is rendered; y counts from the bottom */
+    uint32_t region[4];     /* x, y of the first pixel that is rendered, and how many across and up; y counts from the
+                               bottom */
     float clip_start;       /* along the view direction; equirectangular: distance */
     float clip_end;
     float aperture_radius;    /* of the lens, in scene units; 0: all is in focus */
@@ -179,5 +180,5 @@ typedef struct pm_camera {
     float aperture_rotation;  /* radians */
     float aperture_ratio;     /* above 0: of width to height is 1 / ratio, as Blender's anamorphic bokeh */
     uint32_t aperture_blades; /* fewer than 3: round */
-    uint32_t reserved;
+    uint32_t stride; /* >= 1: from one pixel of the region to the next, so that above 1 it is a sample of the frame's */
 } pm_camera;

@@ -199,6 +199,7 @@ def to_camera(camera: Camera) -> structs.PmCamera:
         aperture_rotation=camera.aperture_rotation,
         aperture_ratio=camera.aperture_ratio,
         aperture_blades=camera.aperture_blades,
+        stride=camera.stride,
     )
 
 

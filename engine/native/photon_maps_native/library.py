@@ -34,7 +34,7 @@ from .errors import NativeError, Status
 from .photons import PhotonArrays
 from .scene_data import Camera, SceneData, Statistics
 
-ABI_VERSION = 7
+ABI_VERSION = 8
 
 
 def embree_path() -> Path:

@@ -193,7 +193,7 @@ class Camera:
     #: Left, right, bottom, top of the frame: at z = -1, ORTHOGRAPHIC in scene units, EQUIRECTANGULAR in radians.
     window: tuple[float, float, float, float]
     resolution: tuple[int, int]  #: of the whole frame
-    region: tuple[int, int, int, int]  #: x, y, width, height of what is rendered
+    region: tuple[int, int, int, int]  #: x, y of the first pixel that is rendered, and how many across and up
     clip_start: float = 0.0
     clip_end: float = float("inf")
     aperture_radius: float = 0.0  #: of the lens; 0: all is in focus
@@ -201,6 +201,7 @@ class Camera:
     aperture_rotation: float = 0.0  #: radians
     aperture_ratio: float = 1.0
     aperture_blades: int = 0  #: fewer than 3: round
+    stride: int = 1  #: from one pixel of the region to the next; above 1 it is a sample of the frame's
 
 
 @dataclass(frozen=True)

@@ -154,7 +154,7 @@ class PmCamera(SizedStructure):
         ("aperture_rotation", c_float),
         ("aperture_ratio", c_float),
         ("aperture_blades", c_uint32),
-        ("reserved", c_uint32),
+        ("stride", c_uint32),
     ]
 
 

@@ -36,7 +36,8 @@ struct Camera {
     Transform transform;             ///< camera to world, rigid; looks along -z
     float left, right, bottom, top;  ///< window of the whole frame at z = -1, in scene units, or in radians
     uint32_t frame_width, frame_height;
-    uint32_t x, y, width, height;  ///< region; y counts from the bottom
+    uint32_t x, y, width, height;  ///< region: its first pixel, and how many; y counts from the bottom
+    uint32_t stride = 1;           ///< from one pixel of the region to the next
     float clip_start, clip_end;    ///< depths: along the view direction, of a panorama distances
     float aperture_radius = 0, focus_distance = 1, aperture_rotation = 0, aperture_ratio = 1;
     uint32_t aperture_blades = 0;

@@ -81,6 +81,7 @@ Camera to_camera(const pm_camera &source) {
     camera.y = source.region[1];
     camera.width = source.region[2];
     camera.height = source.region[3];
+    camera.stride = source.stride;
     camera.clip_start = source.clip_start;
     camera.clip_end = source.clip_end;
     camera.aperture_radius = source.aperture_radius;

@@ -15,30 +15,45 @@ namespace {
 constexpr uint32_t watched_pixels = 1024;
 
 /// The power of the squared radius that the squared error by the kernel's width goes with: 2 where light is smooth,
-/// less at its edges. Between the radii of a plan it was 1.1 to 1.6 behind a narrow gap.
-constexpr double blur_power = 1.25;
+/// 1/2 at its edges. Between the radii of a plan it was 1.1 to 1.6 behind a narrow gap, 0.5 to 0.75 in closed rooms.
+constexpr double blur_power = 1;
 
 /// Means over the first passes of the squared radius, and of its inverse, over that of the first: by the gamma function
 /// r^2 goes as (pass + 1)^(-1/3) / gamma(5/3) (Knaus and Zwicker 2011, equation 21 with alpha = 2/3).
 double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.66 / passes; }
 double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
 
-/// Passes until the error is small enough.
-double passes_needed(double camera, double photons, double blur, double lack, double error, bool shrinks) {
-    constexpr double fewest = 4, most = 1 << 16;
-    const auto squared_error = [&](double passes) {
+/// The variance of a pass's light where its random numbers are stratified over so many passes, over that of the pilot
+/// passes. With n samples at the edges of shadows and things it goes as n^-1.5, elsewhere faster (Mitchell 1996); from
+/// 4 to 64 passes of ten scenes as n^-0.9 to n^-1.7. What more bounces bring goes as n^-1.1, and is taken as n^-1.
+double stratified(double passes) { return std::pow(PilotPixels::passes / passes, 0.4); }
+
+/// Parts of a picture's squared error, as of one pass.
+struct SquaredError {
+    double seen;  ///< noise of what the eye sees without diffuse bounces
+    double paths, photons;
+    double blur, lack;
+
+    double after(double passes, bool shrinks) const {
         const double shrunk = shrinks ? mean_squared_radius(passes) : 1;
         const double inverse = shrinks ? mean_inverse_squared_radius(passes) : 1;
-        return (camera + photons * inverse) / passes + blur * std::pow(shrunk, blur_power) + lack;
-    };
+        const double noise = seen * stratified(passes) + paths + photons * inverse;
+        return noise / passes + blur * std::pow(shrunk, blur_power) + lack;
+    }
+};
+
+/// Passes until the error is small enough.
+double passes_needed(const SquaredError &squared, double error, bool shrinks) {
+    constexpr double fewest = PilotPixels::passes, most = 1 << 16;
     double low = fewest, high = most;
-    if (squared_error(low) <= error * error) return low;
+    if (squared.after(low, shrinks) <= error * error) return low;
     // What is out of reach is the further out of it the more error is left.
-    if (squared_error(most) > error * error) return most * squared_error(most) / (error * error);
+    const double left = squared.after(most, shrinks);
+    if (left > error * error) return most * left / (error * error);
     constexpr int halvings = 24;
     for (int i = 0; i < halvings; ++i) {
         const double middle = std::sqrt(low * high);
-        (squared_error(middle) > error * error ? low : high) = middle;
+        (squared.after(middle, shrinks) > error * error ? low : high) = middle;
     }
     return high;
 }
@@ -71,40 +86,49 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
         for (const double caustic : counts_of(noise.caustic))
             for (const double radius : radii) {
                 const double area = radius * radius;
-                double photons = 0, blur = noise.caustic.blur, cost = noise.pixel_cost;
+                SquaredError squared{.seen = noise.camera_variance - noise.path_variance,
+                                     .paths = noise.path_variance,
+                                     .photons = 0,
+                                     .blur = noise.caustic.blur,
+                                     .lack = noise.lack};
+                double cost = noise.pixel_cost;
                 if (global > 0) {
-                    photons += noise.global.variance * noise.global.count / global / area;
-                    blur += noise.global.blur * std::pow(area, blur_power);
+                    squared.photons += noise.global.variance * noise.global.count / global / area;
+                    squared.blur += noise.global.blur * std::pow(area, blur_power);
                     cost += global * noise.global.cost + noise.gather_cost * global / noise.global.count * area;
                 }
                 if (caustic > 0) {
-                    photons += noise.caustic.variance * noise.caustic.count / caustic;
+                    squared.photons += noise.caustic.variance * noise.caustic.count / caustic;
                     cost += caustic * noise.caustic.cost;
                 }
-                cost *= passes_needed(noise.camera_variance, photons, blur, noise.lack, error, shrinks);
-                if (cost >= best.cost) continue;
-                best = {{static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
-                        1,
-                        static_cast<float>(radius),
-                        cost};
+                const double passes = passes_needed(squared, error, shrinks);
+                if (cost * passes >= best.cost) continue;
+                best = {.counts = {static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
+                        .global_radius = static_cast<float>(radius),
+                        .passes = passes,
+                        .cost = cost * passes};
             }
     return best;
 }
 
 /// So many light samples of a pass that variance times cost is least.
-uint32_t light_samples_for(const PilotNoise &noise, const PhotonCounts &counts, float radius) {
+/// @param plan with one of them
+uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan) {
     constexpr double most = 16;
-    const double area = static_cast<double>(radius) * static_cast<double>(radius);
+    const PhotonCounts &counts = plan.counts;
+    const double area = double{plan.global_radius} * double{plan.global_radius};
     const auto photons = [](const MapNoise &map, uint64_t count) {
         return count > 0 ? map.variance * map.count / static_cast<double>(count) : 0;
     };
     const auto traced = [](const MapNoise &map, uint64_t count) { return map.cost * static_cast<double>(count); };
-    const double other = noise.camera_variance - noise.direct_variance + photons(noise.global, counts.global) / area +
-                         photons(noise.caustic, counts.caustic);
+    const double shrink = stratified(plan.passes);
+    const double direct = noise.direct_variance * shrink;
+    const double other = (noise.camera_variance - noise.path_variance) * shrink - direct + noise.path_variance +
+                         photons(noise.global, counts.global) / area + photons(noise.caustic, counts.caustic);
     const double cost = noise.pixel_cost + traced(noise.global, counts.global) + traced(noise.caustic, counts.caustic);
     // With k samples: (other + direct / k) * (cost + k * light_cost).
-    if (noise.light_cost == 0 || noise.direct_variance == 0) return 1;
-    const double best = std::sqrt(noise.direct_variance * cost / (std::max(other, 1e-12) * noise.light_cost));
+    if (noise.light_cost == 0 || direct == 0) return 1;
+    const double best = std::sqrt(direct * cost / (std::max(other, 1e-12) * noise.light_cost));
     return static_cast<uint32_t>(std::clamp(std::round(best), 1.0, most));
 }
 
@@ -120,7 +144,7 @@ PilotNoise PilotNoise::with_light_samples(uint32_t count) const {
 
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const Plan with_one = plan_photons(noise, error, shrinks);
-    const uint32_t count = light_samples_for(noise, with_one.counts, with_one.global_radius);
+    const uint32_t count = light_samples_for(noise, with_one);
     if (count == 1) return with_one;
     Plan with_more = plan_photons(noise.with_light_samples(count), error, shrinks);
     with_more.light_samples = count;

@@ -35,6 +35,7 @@ struct MapNoise {
 struct PilotNoise {
     double camera_variance = 0;  ///< of all that photons do not carry
     double direct_variance = 0;  ///< part of it that more light samples take away
+    double path_variance = 0;    ///< part of it by diffuse bounces of cameras' paths
     MapNoise global, caustic;
     double lack = 0;         ///< relative square of the light that is missing in all pilot passes
     double pixel_cost = 0;   ///< of the cameras' paths and their estimates of a whole pass, in rays
@@ -49,6 +50,7 @@ struct Plan {
     PhotonCounts counts;
     uint32_t light_samples = 1;
     float global_radius = 1;                                ///< over that of the pilot passes
+    double passes = 0;                                      ///< until the picture has its error
     double cost = std::numeric_limits<double>::infinity();  ///< in rays, until the picture has its error
 };
 

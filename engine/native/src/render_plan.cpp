@@ -145,7 +145,6 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
         for (const Pilot &other : pilots) noise.lack = std::max(noise.lack, pilot.pixels.squared_lack(other.pixels));
         noise.pixel_cost = frame * pilot.pixels.pixel_cost();
         noise.light_cost = frame * light_sample_cost * pilot.pixels.light_samples();
-        if (settings_.light_samples > 0) noise.direct_variance = 0;  // they are not for the plan to choose
         if (pilot.indirect >= Indirect::paths)
             noise.camera_variance = std::max(noise.camera_variance,
                                              pilot.pixels.hidden_variance(RareLight::indirect, pilots.front().pixels));
@@ -155,6 +154,8 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
             noise.caustic.count = static_cast<double>(counts_.caustic);
             noise.caustic.cost = cost(caustic_rays, caustic_stored, counts_.caustic);
         }
+        if (pilot.indirect != Indirect::photons) noise.path_variance = noise.camera_variance - noise.direct_variance;
+        if (settings_.light_samples > 0) noise.direct_variance = 0;  // they are not for the plan to choose
         if (first_radii_->indirect > 0 && pilot.indirect <= Indirect::gather) {
             noise.global.count = static_cast<double>(counts_.global);
             noise.global.cost = cost(rays, stored, counts_.global);
@@ -165,7 +166,7 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
 
 void Render::make_plan() {
     constexpr uint64_t few_pilot_photons = 1 << 13;
-    constexpr double share_of_pilots = 0.02, worthwhile = 4, most = 8;
+    constexpr double share_of_pilots = 0.04, worthwhile = 2, most = 16;
     if (!is_planned() || (first_radii_->indirect == 0 && first_radii_->caustic == 0)) return;
 
     // See what a few passes of few photons bring to some pixels.

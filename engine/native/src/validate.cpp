@@ -124,7 +124,9 @@ void validate(const pm_camera &camera) {
     require(camera.window[0] < camera.window[1] && camera.window[2] < camera.window[3], "camera: the window is empty");
     const auto [x, y, width, height] = std::to_array(camera.region);
     require(width > 0 && height > 0, "camera: the region is empty");
-    require(uint64_t{x} + width <= camera.resolution[0] && uint64_t{y} + height <= camera.resolution[1],
+    require(camera.stride > 0, "camera: the stride is 0");
+    const uint64_t stride = camera.stride;
+    require(x + (width - 1) * stride < camera.resolution[0] && y + (height - 1) * stride < camera.resolution[1],
             "camera: the region reaches beyond the frame");
     require(camera.resolution[0] <= 65536 && camera.resolution[1] <= 65536,
             "camera: the resolution is beyond 65536 pixels");

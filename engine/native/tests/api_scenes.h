@@ -62,7 +62,7 @@ struct Arrays {
             lights.push_back(light);
         }
         camera = {
-            sizeof camera, PM_CAMERA_PERSPECTIVE, {}, {-1, 1, -1, 1}, {8, 8}, {0, 0, 8, 8}, 0, 100, 0, 0, 0, 0, 0, 0};
+            sizeof camera, PM_CAMERA_PERSPECTIVE, {}, {-1, 1, -1, 1}, {8, 8}, {0, 0, 8, 8}, 0, 100, 0, 0, 0, 0, 0, 1};
         std::copy(identity.begin(), identity.end(), camera.transform);
         camera.transform[3] = camera.transform[7] = 0.4f;
         camera.transform[11] = 0.8f;
