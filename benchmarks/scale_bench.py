@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the unit of length costs: scenes of the chart with nothing set, times 0.001 and 1000, over what they are.
 
-The renders take turns pass by pass, so that what else the machine does hits all alike. The pictures are the same but for
-rounding, so equally many passes come to the same error.
+The renders take turns pass by pass, so that what else the machine does hits all alike. The pictures are the same but
+for rounding, so equally many passes come to the same error.
 """
 
 from __future__ import annotations
