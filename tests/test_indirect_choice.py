@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from photon_maps_native import LightType, Material, Mesh, SceneData, diffuse, emitter
 
+from benchmarks.limits.counts import passage
 from engine.map_choice import explain_maps, maps_built
 from engine.passes import Pass
 from engine.settings import AUTOMATIC, Estimate, Indirect, Integrator
@@ -51,6 +52,12 @@ def test_a_wide_field_is_lit_by_paths() -> None:
     assert statistics.indirect == Indirect.PATHS
     assert maps_built(statistics) == [] and statistics.photons_emitted == 0
     assert explain_maps(picture.settings, statistics)[0].startswith("No global map: to the wanted error paths need")
+
+
+def test_where_light_seldom_comes_it_is_the_photons() -> None:
+    # Behind two turns of a passage: four in a thousand of the pilots' paths find any light.
+    statistics = Picture(passage(), box_filtered(**AUTOMATIC)).run(1).render.statistics()
+    assert statistics.indirect == Indirect.PHOTONS and statistics.radius_first > 0.0
 
 
 def rough_ball(roughness: float) -> Thing:

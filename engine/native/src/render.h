@@ -120,10 +120,11 @@ class Render {
     void choose_radii();
     void set_radii(Radii radii);
     void make_plan();
-    /// A way to bring the light of diffuse bounces, and the plan for it.
+    /// A way to bring the light of diffuse bounces, the plan for it, and what tracing the pilot passes' photons cost.
     struct Choice {
         Pilot pilot;
         Plan plan;
+        double pilot_cost;  ///< in rays
     };
     std::optional<Choice> choose_by_pilots(uint32_t first, const PhotonCounts &usual, float widened);
     std::vector<Indirect> ways() const;

@@ -179,11 +179,8 @@ void Render::make_plan() {
     }
 
     // Where there will be much to do, look again with more photons: noise hides how kernels blur.
-    const PilotNoise &noise = choice->pilot.noise;
-    const double pilot_cost =
-        PilotPixels::passes * (noise.global.cost * noise.global.count + noise.caustic.cost * noise.caustic.count);
-    const double times = share_of_pilots * choice->plan.cost / pilot_cost;
-    if (pilot_cost > 0 && times >= worthwhile) {
+    const double times = share_of_pilots * choice->plan.cost / choice->pilot_cost;
+    if (choice->pilot_cost > 0 && times >= worthwhile) {
         const auto more = [&](uint64_t count) {
             return static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
         };
@@ -224,10 +221,13 @@ std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const Pho
 
     constexpr double usual_error = 0.02;
     const double error = settings_.stop_error > 0 ? double{settings_.stop_error} : usual_error;
+    const PilotNoise &first_way = pilots.front().noise;
+    const double pilot_cost = PilotPixels::passes * (first_way.global.cost * first_way.global.count +
+                                                     first_way.caustic.cost * first_way.caustic.count);
     std::optional<Choice> best;
     for (const Pilot &pilot : pilots) {
         const Plan plan = plan_for(pilot.noise, error, settings_.use_progressive);
-        if (plan.cost < (best ? best->plan.cost : Plan{}.cost)) best = {pilot, plan};
+        if (plan.cost < (best ? best->plan.cost : Plan{}.cost)) best = {pilot, plan, pilot_cost};
     }
     return best;
 }

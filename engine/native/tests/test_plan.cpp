@@ -27,6 +27,7 @@ double squared_error(const PilotNoise &noise, double photons, double cost) {
 void check_split(Checks &checks) {
     // Neyman's allocation: effort in proportion to the root of variance by cost.
     PilotNoise noise = room();
+    noise.path_variance = noise.camera_variance;  // passes do not stratify it
     noise.pixel_cost *= 16;
     const double best = std::sqrt(noise.global.variance * noise.global.count / noise.global.cost /
                                   (noise.camera_variance / noise.pixel_cost));
@@ -37,10 +38,23 @@ void check_split(Checks &checks) {
 
     // Light that the camera finds badly, such as one lamp of many, leaves less for photons, and the other way round.
     PilotNoise many_lamps = noise, dim_corners = noise;
-    many_lamps.camera_variance *= 100;
+    many_lamps.camera_variance = many_lamps.path_variance = 100 * noise.camera_variance;
     dim_corners.global.variance *= 25;
     checks.that(plan_for(many_lamps, 0.01, false).counts.global < plan.counts.global / 4, "camera noise");
     checks.that(plan_for(dim_corners, 0.01, false).counts.global > plan.counts.global * 3, "photon noise");
+}
+
+void check_passes(Checks &checks) {
+    // Variance falls as 1 / n along paths, and as 1 / n^1.4 where passes stratify each other, from four passes on.
+    PilotNoise paths;
+    paths.camera_variance = paths.path_variance = 0.2;
+    paths.pixel_cost = 1'000;
+    PilotNoise seen = paths;
+    seen.path_variance = 0;
+    const double plain = 0.2 / 1e-4, stratified = std::pow(0.2 * std::pow(4, 0.4) / 1e-4, 1 / 1.4);
+    checks.near(plan_for(paths, 0.01, true).passes / plain, 1, 1e-3, "passes of paths");
+    checks.near(plan_for(seen, 0.01, true).passes / stratified, 1, 1e-3, "stratified passes");
+    checks.near(plan_for(seen, 0.01, true).cost / (1'000 * stratified), 1, 1e-3, "their cost");
 }
 
 void check_radius(Checks &checks) {
@@ -77,6 +91,7 @@ void check_bounds(Checks &checks) {
 int main() {
     Checks checks;
     check_split(checks);
+    check_passes(checks);
     check_radius(checks);
     check_bounds(checks);
     return checks.report();
