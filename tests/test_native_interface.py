@@ -113,6 +113,8 @@ BAD_SCENES: dict[str, tuple[Callable[[], SceneData], str]] = {
     "empty window": (lambda: with_camera(window=(1.0, 1.0, 0.0, 1.0)), "camera: the window"),
     "empty region": (lambda: with_camera(region=(0, 0, 0, 8)), "camera: the region"),
     "region beyond the frame": (lambda: with_camera(region=(1, 0, 8, 8)), "camera: the region"),
+    "stride beyond the frame": (lambda: with_camera(region=(0, 1, 4, 4), stride=3), "camera: the region"),
+    "stride of none": (lambda: with_camera(stride=0), "camera: the stride"),
     "flattened camera": (lambda: with_camera(transform=FLAT), "camera: transform"),
     "clip end before start": (lambda: with_camera(clip_start=2.0, clip_end=1.0), "camera: clip_end"),
 }
