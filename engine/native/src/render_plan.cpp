@@ -178,9 +178,10 @@ void Render::make_plan() {
         return;
     }
 
-    // Where there will be much to do, look again with more photons: noise hides how kernels blur.
+    // Where there will be much to do, look again with more photons: noise hides how kernels blur. Where paths seem
+    // better, only if that is next to nothing beside what they have to do.
     const double times = share_of_pilots * choice->plan.cost / choice->pilot_cost;
-    if (choice->pilot_cost > 0 && times >= worthwhile) {
+    if (choice->pilot_cost > 0 && times >= (choice->pilot.indirect < Indirect::paths ? worthwhile : most)) {
         const auto more = [&](uint64_t count) {
             return static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
         };
