@@ -23,10 +23,17 @@ constexpr double blur_power = 1;
 double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.66 / passes; }
 double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
 
-/// The variance of a pass's light where its random numbers are stratified over so many passes, over that of the pilot
-/// passes. With n samples at the edges of shadows and things it goes as n^-1.5, elsewhere faster (Mitchell 1996); from
-/// 4 to 64 passes of ten scenes as n^-0.9 to n^-1.7. What more bounces bring goes as n^-1.1, and is taken as n^-1.
-double stratified(double passes) { return std::pow(PilotPixels::passes / passes, 0.4); }
+/// The variance of a pass's light where its random numbers are stratified over so many passes, over what the halves of
+/// the pilot passes tell. With n samples at the edges of shadows and things the variance of their mean goes as n^-1.5,
+/// elsewhere faster (Mitchell 1996); from 4 to 64 passes of ten scenes as n^-0.9 to n^-1.7. What more bounces bring
+/// goes as n^-1.1, and is taken as n^-1. A quarter of the halves' squared difference is V(2) - V(4) (as of
+/// ErrorEstimate::compare_halves).
+double stratified(double passes) {
+    constexpr double power = 1.4;
+    constexpr double most = 1 << 12;  // what is out of reach by then is so for other reasons
+    const double doubling = std::exp2(-power);
+    return doubling / (1 - doubling) * std::pow(PilotPixels::passes / std::min(passes, most), power - 1);
+}
 
 /// Parts of a picture's squared error, as of one pass.
 struct SquaredError {
@@ -70,7 +77,7 @@ double mean_above_zero(double center, double deviation) {
 /// Chooses photons and radius.
 Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
     const auto counts_of = [](const MapNoise &map) {
-        // Fewer would cost no less: a pass of a small picture has other things to do. 2^14 ... 2^23.
+        // Fewer would cost no less: a pass of a small picture has other things to do. 2^10 ... 2^23.
         constexpr int fewest = 10, most = 23, steps = 2;
         std::vector<double> counts;
         if (map.count == 0) return std::vector<double>{0};
@@ -113,7 +120,7 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
 
 /// So many light samples of a pass that variance times cost is least.
 /// @param plan with one of them
-uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan) {
+uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan, bool shrinks) {
     constexpr double most = 16;
     const PhotonCounts &counts = plan.counts;
     const double area = double{plan.global_radius} * double{plan.global_radius};
@@ -123,8 +130,10 @@ uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan) {
     const auto traced = [](const MapNoise &map, uint64_t count) { return map.cost * static_cast<double>(count); };
     const double shrink = stratified(plan.passes);
     const double direct = noise.direct_variance * shrink;
-    const double other = (noise.camera_variance - noise.path_variance) * shrink - direct + noise.path_variance +
-                         photons(noise.global, counts.global) / area + photons(noise.caustic, counts.caustic);
+    const double inverse = shrinks ? mean_inverse_squared_radius(plan.passes) : 1;
+    const double other =
+        (noise.camera_variance - noise.path_variance) * shrink - direct + noise.path_variance +
+        (photons(noise.global, counts.global) / area + photons(noise.caustic, counts.caustic)) * inverse;
     const double cost = noise.pixel_cost + traced(noise.global, counts.global) + traced(noise.caustic, counts.caustic);
     // With k samples: (other + direct / k) * (cost + k * light_cost).
     if (noise.light_cost == 0 || direct == 0) return 1;
@@ -144,7 +153,7 @@ PilotNoise PilotNoise::with_light_samples(uint32_t count) const {
 
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks) {
     const Plan with_one = plan_photons(noise, error, shrinks);
-    const uint32_t count = light_samples_for(noise, with_one);
+    const uint32_t count = light_samples_for(noise, with_one, shrinks);
     if (count == 1) return with_one;
     Plan with_more = plan_photons(noise.with_light_samples(count), error, shrinks);
     with_more.light_samples = count;

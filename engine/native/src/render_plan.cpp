@@ -180,12 +180,13 @@ void Render::make_plan() {
 
     // Where there will be much to do, look again with more photons: noise hides how kernels blur. Where paths seem
     // better, only if that is next to nothing beside what they have to do.
-    const double times = share_of_pilots * choice->plan.cost / choice->pilot_cost;
-    if (choice->pilot_cost > 0 && times >= (choice->pilot.indirect < Indirect::paths ? worthwhile : most)) {
-        const auto more = [&](uint64_t count) {
-            return static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
+    const double times = choice->pilot_cost > 0 ? share_of_pilots * choice->plan.cost / choice->pilot_cost : 0;
+    if (times >= (choice->pilot.indirect < Indirect::paths ? worthwhile : most)) {
+        const auto more = [&](uint64_t count, uint64_t with_room) {
+            const auto wanted = static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
+            return is_limited_ ? std::min(wanted, with_room) : wanted;
         };
-        counts_ = {more(counts_.global), more(counts_.caustic)};
+        counts_ = {more(counts_.global, usual.global), more(counts_.caustic, usual.caustic)};
         const float widened = std::max(1.0f, choice->plan.global_radius);
         set_radii({first_radii_->indirect * widened, first_radii_->caustic});
         if (auto second = choose_by_pilots(PilotPixels::passes, usual, pilot_radius * widened))
