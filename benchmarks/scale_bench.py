@@ -28,7 +28,7 @@ def measure(name: str, passes: int) -> str:
     take_turns(list(renders.values()), passes)
     seconds, known = renders[1.0].seconds, renders[1.0].picture.pixels()
     parts = [f"{name}: {passes} passes in {seconds:.2f} CPU-s"]
-    for scale in (SCALES[0], SCALES[-1]):
+    for scale in (scale for scale in SCALES if scale != 1.0):
         pixels = renders[scale].picture.pixels()
         mean, rms = pixels.mean() / known.mean() - 1.0, np.sqrt(np.mean((pixels - known) ** 2)) / known.mean()
         parts.append(f"x {scale:g}: time {renders[scale].seconds / seconds:.3f}, mean {mean:+.2%}, pixels {rms:.2%}")

@@ -46,7 +46,8 @@ class Row:
 
     @property
     def ratio(self) -> float:
-        return self.automatic / self.best
+        """Time with nothing set over the best by hand; infinite unless both came to the target."""
+        return self.automatic / self.best if self.best < math.inf else math.inf
 
     def line(self) -> str:
         """Return it in words."""
@@ -122,8 +123,8 @@ def measure(name: str, limit: float) -> list[Row]:
 
 
 def fastest(waiting: dict[str, Runner], limit: float) -> str | None:
-    """Return who comes to the target first; None if nobody does within a time."""
-    while waiting:
+    """Return who comes to the target first; None if nobody does within a time. Automatic never gives up."""
+    while True:
         label = min(waiting, key=lambda each: (waiting[each].seconds, each))
         runner = waiting[label]
         if runner.seconds >= limit:
@@ -133,7 +134,6 @@ def fastest(waiting: dict[str, Runner], limit: float) -> str | None:
             return label
         if label != AUTOMATIC and runner.seconds >= HEAD_START and runner.is_hopeless(waiting.values()):
             del waiting[label]
-    return None
 
 
 def main() -> int:

@@ -17,13 +17,14 @@ from engine.chart.accuracy import Reference
 from engine.chart.canvas import Canvas, encoded, linear, rendered
 from engine.chart.curve import Curve, Point, compare, usable
 from engine.chart.job import SMALL_PIXELS, ChartJob, Task, small_camera
-from engine.chart.ladder import PRESENT, Size, Variant, build_ladder
+from engine.chart.ladder import PRESENT, Size, Variant, build_ladder, reference_settings
 from engine.chart.outcome import TARGETS, Cancelled, ChartError, choices, settings_of
 from engine.chart.report import report
+from engine.chart.run import size_of
 from engine.chart.words import count, duration, percent
 from engine.passes import Pass
 from engine.session import LoadedScene, Session
-from engine.settings import AUTOMATIC, Estimate, Integrator, RenderSettings, Stop
+from engine.settings import AUTOMATIC, Estimate, Indirect, Integrator, RenderSettings, Stop
 from tests.shapes import camera, lamp, quad, scene
 from tests.test_indirect_choice import field
 
@@ -135,6 +136,35 @@ def test_variants_at_both_sizes_have_as_many_photons_in_a_kernel():
         held = [settings.photon_count * settings.radius**2 for settings in (at_full, at_small)]
         assert held[0] == pytest.approx(held[1])
     assert Variant("a").settings(RenderSettings(), full) == RenderSettings()
+
+
+def test_with_as_many_photons_the_small_picture_has_the_settings_of_the_full_one():
+    full = Size(480_000, 120_000, 0.1, light_samples=3)
+    small = replace(full, pixels=20_000)
+    planned = RenderSettings(use_auto=True, pass_offset=7)
+    assert Variant(PRESENT).small_settings(planned, full, small) == replace(planned, stop=Stop.PASSES, pass_offset=0)
+    half = Variant("Radius x 1/2", radius=0.5).small_settings(planned, full, small)
+    assert (half.radius, half.photon_count, half.light_samples, half.use_auto) == (0.05, 120_000, 3, False)
+
+
+def test_the_reference_has_four_times_the_photons_and_a_quarter_of_the_radius():
+    full, small = Size(480_000, 480_000, 0.1), Size(20_000, 120_000, 0.1)
+    first, second = (reference_settings(RenderSettings(use_auto=True, seed=5), full, small, half) for half in (0, 1))
+    assert (first.photon_count, first.use_auto) == (480_000, False)
+    assert first.radius == pytest.approx(0.1 * 2 / 4)  # as many photons of a quarter as many, then a quarter of that
+    assert first.seed != second.seed and 5 not in (first.seed, second.seed)
+    assert reference_settings(RenderSettings(), replace(full, radius=0.0), small, 0).radius == 0.0
+
+
+def test_a_radius_for_caustics_alone_is_not_the_global_maps():
+    found = SimpleNamespace(
+        photon_count=9, caustic_photon_count=8, radius_first=0.0, caustic_radius_first=0.1, light_samples=2,
+        indirect=Indirect.PATHS,
+    )  # fmt: skip
+    session = SimpleNamespace(statistics=lambda: found)
+    assert size_of(5, session) == Size(5, 9, 0.0, light_samples=2, by_paths=True)
+    found.indirect = Indirect.PHOTONS
+    assert size_of(5, session) == Size(5, 9, 0.1, light_samples=2)
 
 
 @pytest.mark.parametrize("region", [(0, 0, 1920, 1080), (300, 200, 700, 800), (5, 5, 40, 30)])

@@ -99,11 +99,12 @@ class ChartJob:
             # Which light photons bring is Automatic's choice alone, so where it takes paths it chooses all.
             count = full.size.photon_count if full.size.by_paths else min(full.size.photon_count, MOST_PHOTONS)
             small = replace(full.size, pixels=_pixels(camera), photon_count=count)
-            asked = [reference_settings(self._base, full.size, small, half) for half in (0, 1)]
+            bounded = replace(small, photon_count=min(count, MOST_PHOTONS))
+            asked = [reference_settings(self._base, full.size, bounded, half) for half in (0, 1)]
             halves = [stack.enter_context(Session(scene, settings, camera=camera)) for settings in asked]
             reference = self._render_reference(halves)
             self.phase = "Variants"
-            ladder, runs = self._render_ladder(stack, scene, camera, (full.size, small), reference, halves[0])
+            ladder, runs, small = self._render_ladder(stack, scene, camera, (full.size, small), reference, halves[0])
             if full.wall_per_cpu is None:
                 spent = time.process_time() - cpu_started
                 full = replace(full, wall_per_cpu=(time.monotonic() - self._started) / spent)
@@ -149,8 +150,8 @@ class ChartJob:
     def _render_ladder(
         self, stack: ExitStack, scene: LoadedScene, camera: Camera, sizes: tuple[Size, Size], reference: Reference,
         half: Session,
-    ) -> tuple[Ladder, list[Run]]:  # fmt: skip
-        """Render a pass of the variant that has had the least time, again and again."""
+    ) -> tuple[Ladder, list[Run], Size]:  # fmt: skip
+        """Render a pass of the variant that has had the least time, again and again; return the radius, too."""
         seen = half.statistics()
         full, small = sizes
 
@@ -170,14 +171,14 @@ class ChartJob:
             ahead = present.passes < PRESENT_PASSES
             run = present if ahead else min(runs, key=lambda run: run.seconds / WEIGHTS.get(run.variant.name, 1.0))
             if not run.step(lambda session: self._step(session, end)):
-                return ladder, runs
+                return ladder, runs, small
 
     def _conclude(
         self, camera: Camera, full: _Full, small: Size, reference: Reference, halves: list[Session], ladder: Ladder,
         runs: list[Run],
     ) -> Chart:  # fmt: skip
         scaling = _scaling(full, small, runs[0])
-        radius = full.size.radius or runs[0].session.statistics().radius_first / math.sqrt(scaling.photons)
+        radius = full.size.radius or small.radius / math.sqrt(scaling.photons)
         size = replace(full.size, radius=radius)
         rows = tuple(Row(run.variant, run.variant.settings(self._base, size), run.curve(scaling)) for run in runs)
         return Chart(

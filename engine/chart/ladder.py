@@ -26,7 +26,7 @@ class Size:
 
     pixels: int  #: that are rendered
     photon_count: int  #: of a pass with the present settings
-    radius: float  #: of the first pass with the present settings, scene units; 0: no photon map
+    radius: float  #: of the first pass with the present settings, scene units; 0: not known
     light_samples: int = 0  #: with the present settings
     by_paths: bool = False  #: Automatic has paths bring indirect light
 
@@ -189,9 +189,9 @@ def loses_light(settings: RenderSettings, seen: Statistics) -> bool:
 def reference_settings(base: RenderSettings, full: Size, size: Size, half: int) -> RenderSettings:
     """Return the settings of one half of the reference: photon maps with all light, and a quarter of the radius.
 
-    Where no radius is known, or Automatic has chosen one for caustics alone, four times the photons halve the engine's.
+    Where no radius is known, four times the photons halve that of the engine's choice.
     """
-    radius = 0.0 if full.by_paths else full.radius * math.sqrt(full.photon_count / size.photon_count)
+    radius = full.radius * math.sqrt(full.photon_count / size.photon_count)
     return RenderSettings(
         photon_count=4 * size.photon_count,
         radius=radius / 4,

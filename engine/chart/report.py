@@ -16,19 +16,19 @@ def report(chart: Chart) -> str:
 
 def _heading(chart: Chart) -> list[str]:
     width, height = chart.full.resolution
-    pixels = "all of its pixels" if chart.stride == 1 else f"one of each {chart.stride} x {chart.stride} of its pixels"
+    pixels = "all" if chart.stride == 1 else f"one in every {chart.stride} x {chart.stride}"
     measured = (
         f"The first {count(chart.full.passes, 'pass')} of it were rendered to measure their time and noise."
         if chart.full.passes
-        else "There was no time to render a pass of it: its times are reckoned from the small picture alone."
+        else "There was no time to render a pass of it: its times are reckoned from some of its pixels alone."
     )
     return [
         f"Speed vs Accuracy: {chart.scene}",
         "",
         f"All times are of the picture at {width} x {height}. {measured}",
-        f"The variants rendered {pixels}. The reference is {count(chart.reference_passes, 'pass')} of photon",
-        "maps with four times the photons and other random numbers. Its own error of about",
-        f"{percent(chart.reference_error)} is taken off the errors below.",
+        f"The variants rendered {pixels} of its pixels. The reference is {count(chart.reference_passes, 'pass')} of",
+        "photon maps with four times the photons, smaller kernels and other random numbers. Its own error",
+        f"of about {percent(chart.reference_error)} is taken off the errors below.",
     ]
 
 
@@ -91,7 +91,7 @@ def _left_out(chart: Chart) -> list[str]:
 def _points(chart: Chart) -> list[str]:
     lines = [
         "Points of the chart",
-        f"  {'':24}{'passes':>8}{'error':>9}{'CPU time':>14}   measured at the small size: error, CPU time",
+        f"  {'':24}{'passes':>8}{'error':>9}{'CPU time':>14}   measured in these pixels: error, CPU time",
     ]
     for row in chart.rows:
         for point in row.curve.points if row.curve else ():

@@ -148,6 +148,7 @@ def size_of(pixels: int, session: Session) -> Size:
     """Return what photons and radius are at a size, from a session that has rendered a pass."""
     statistics = session.statistics()
     count = statistics.photon_count or statistics.caustic_photon_count
-    radius = statistics.radius_first or statistics.caustic_radius_first
     by_paths = statistics.indirect in (Indirect.PATHS, Indirect.ALL_PATHS)
+    # What serves caustics alone tells nothing of the global map.
+    radius = 0.0 if by_paths else statistics.radius_first or statistics.caustic_radius_first
     return Size(pixels, count, radius, statistics.light_samples, by_paths)

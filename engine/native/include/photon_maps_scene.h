@@ -180,5 +180,6 @@ typedef struct pm_camera {
     float aperture_rotation;  /* radians */
     float aperture_ratio;     /* above 0: of width to height is 1 / ratio, as Blender's anamorphic bokeh */
     uint32_t aperture_blades; /* fewer than 3: round */
-    uint32_t stride; /* >= 1: from one pixel of the region to the next, so that above 1 it is a sample of the frame's */
+    uint32_t
+        stride; /* >= 1: from one pixel of the region to the next, above 1 they are a sample of the frame's pixels */
 } pm_camera;

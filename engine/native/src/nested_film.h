@@ -36,7 +36,8 @@ class NestedFilm {
     /// last radius that agrees with all smaller ones is the pixel's (Goldenshluger and Nemirovski 1997, "On spatially
     /// adaptive estimation of nonparametric regression"). Variances are means over 3x3 pixels, and so is the index of
     /// the radius, between two of which the estimates are interpolated: pixels beside the border of a part of a frame
-    /// may differ from the whole's, by two pixels at most.
+    /// may differ from the whole's, by two pixels at most. In a picture of some of the frame's pixels neighbours are
+    /// further apart.
     /// @param passes for each tile the number of passes added
     /// @param pixels rows from the bottom; the first three of `channels` are changed
     void choose(const std::vector<uint32_t> &passes, std::span<float> pixels, size_t channels) const;

@@ -127,7 +127,7 @@ void validate(const pm_camera &camera) {
     require(camera.stride > 0, "camera: the stride is 0");
     const uint64_t stride = camera.stride;
     require(x + (width - 1) * stride < camera.resolution[0] && y + (height - 1) * stride < camera.resolution[1],
-            "camera: the region reaches beyond the frame");
+            "camera: the region, at its stride, reaches beyond the frame");
     require(camera.resolution[0] <= 65536 && camera.resolution[1] <= 65536,
             "camera: the resolution is beyond 65536 pixels");
     require(camera.clip_start >= 0 && camera.clip_end > camera.clip_start,

@@ -66,6 +66,7 @@ void test_garbage_is_refused_or_rendered(Checks &checks, pm_device *device, uint
     }
     if (random() % 5 == 0) spoil(arrays.camera.transform, number);
     if (random() % 9 == 0) spoil(arrays.camera.region, index);
+    if (random() % 9 == 0) arrays.camera.stride = index();
     if (random() % 9 == 0) arrays.settings.radius = number();
     if (random() % 9 == 0) arrays.settings.cone_k = number();
     for (pm_light &light : arrays.lights) {
