@@ -239,6 +239,19 @@ def test_each_side_of_a_plane_is_lit_on_its_own() -> None:
             assert dark.max() == 0
 
 
+def test_of_many_lamps_each_counts_in_full() -> None:
+    """So many that one is chosen by chance for each ray: what they bring adds up as if all were asked."""
+    random = np.random.default_rng(3)
+    places, powers = random.uniform((-2, -2, 1), (2, 2, 4), (40, 3)), random.uniform(1, POWER, 40)
+    lights = [lamp(LightType.POINT, place, (0, 0, 0), power) for place, power in zip(places, powers, strict=True)]
+    view = camera((0, -3, 3), (0, 0, 0), (8, 8), half_angle=0.002)
+    data = scene([quad((0, 0, 0), (4, 0, 0), (0, 4, 0))], view, [diffuse((ALBEDO,) * 3)], lights)
+    pixels = Picture(data, box_filtered(max_bounces=0)).run(256).pixels(Pass.DIRECT)
+    distances = np.linalg.norm(places, axis=-1)
+    irradiance = (powers / (4 * np.pi * distances**2) * places[:, 2] / distances).sum()
+    assert pixels.mean() == pytest.approx(ALBEDO / np.pi * irradiance, rel=0.01)
+
+
 def test_a_constant_world_lights_an_open_plane_by_pi() -> None:
     data = scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], camera((0, 0, 3), (0, 0, 0), (8, 8), 0.05), world=(1, 2, 3))
     settings = box_filtered(radius=0.5, filter=Filter.NONE, photon_count=1 << 18, max_bounces=1)

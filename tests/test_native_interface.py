@@ -17,7 +17,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from photon_maps_native import (
+    Attribute,
     Device,
+    Domain,
     Image,
     Instances,
     LightType,
@@ -144,6 +146,33 @@ BAD_SETTINGS = {
 def test_bad_settings_are_refused_by_name(message: str) -> None:
     with pytest.raises(NativeError, match=message) as caught:
         Picture(plain(), RenderSettings(**BAD_SETTINGS[message]))
+    assert caught.value.status == Status.INVALID_ARGUMENT
+
+
+def with_mesh(**fields: object) -> SceneData:
+    data = plain()
+    return replace(data, meshes=[replace(data.meshes[0], **fields)])
+
+
+#: The helper takes pointers, so that it would read beyond the ends of these.
+MISSHAPEN: dict[str, Callable[[], SceneData]] = {
+    "vertices": lambda: with_mesh(vertices=np.zeros((4, 2), np.float32)),
+    "triangles": lambda: with_mesh(triangles=np.zeros((2, 2), np.uint32)),
+    "slots": lambda: with_mesh(slots=np.zeros(1, np.uint32)),
+    "corner_normals": lambda: with_mesh(corner_normals=np.ones((2, 3), np.float32)),
+    "attribute 7": lambda: with_mesh(attributes=[Attribute(7, Domain.VERTEX, np.zeros((3, 2), np.float32))]),
+    "transforms of the instances": lambda: with_instances(transforms=np.zeros((1, 3, 3), np.float32)),
+    "first_slots": lambda: with_instances(first_slots=np.empty(0, np.uint32)),
+    "visibility of the instances": lambda: with_instances(visibility=np.empty(0, np.uint32)),
+    "properties of the instances": lambda: with_instances(properties=np.zeros((1, 5), np.float32)),
+    "transform": lambda: with_camera(transform=np.zeros((4, 4), np.float32)),
+}
+
+
+@pytest.mark.parametrize("name", MISSHAPEN)
+def test_an_array_of_another_shape_is_refused_by_name(name: str) -> None:
+    with pytest.raises(NativeError, match=f"^{name} has shape .*, expected") as caught:
+        Picture(MISSHAPEN[name](), RenderSettings())
     assert caught.value.status == Status.INVALID_ARGUMENT
 
 

@@ -203,6 +203,37 @@ void check_small_caster(test::Checks &checks) {
     }
 }
 
+/// A small pane of radiance L and area A: 2 pi A L in all, and through a ball that it sees at an angle t to its normal
+/// by a half angle h, L A pi sin(h)^2 cos(t); whether or not photons are aimed at the ball.
+void check_glowing_pane(test::Checks &checks) {
+    constexpr float radius = 0.5f, distance = 2, radiance = 3, width = 0.02f, height = 0.04f;
+    const Vec3 center{distance * std::numbers::sqrt3_v<float> / 2, 0, distance / 2};  // at 60 degrees
+    test::TestScene test;
+    test.add(test::pane_mesh(width, height), {}, test::glow);
+    test.add(test::sphere_mesh(radius), center, test::glass);
+    test.scene.freeze();
+    const Lights lights(test.scene, {}, {});
+    const Emission emission(test.scene, lights);
+    const double to_one_side = std::numbers::pi * double{width} * double{height} * double{radiance};
+    const double power = 2 * to_one_side, through = to_one_side / 16 / 2;
+    const auto check = [&](const std::string &name, const Emit &emit) {
+        constexpr uint64_t count = 1 << 18;
+        Mean all, ball;
+        for (uint64_t i = 0; i < count; ++i) {
+            Sequence sequence(i, 5);
+            const std::optional<PhotonEmission> photon = emit(sequence);
+            if (!photon) continue;
+            all.add({photon->flux.x, 0, 0});
+            if (passes(photon->ray, center, radius)) ball.add({photon->flux.x, 0, 0});
+        }
+        checks.near(all.mean(count), power, 5 * std::sqrt(all.variance(count)) + 1e-4 * power, name + ": all flux");
+        checks.near(ball.mean(count), through, 5 * std::sqrt(ball.variance(count)) + 1e-3 * through,
+                    name + ": flux through a ball");
+    };
+    check("glowing pane", [&](Sequence &s) { return emission.emit(s); });
+    check("glowing pane, aimed", [&](Sequence &s) { return emission.emit_caustic(s); });
+}
+
 /// Of many lamps, or many glowing panes, the one by the pool gets the caustic photons.
 void check_near_lamp(test::Checks &checks) {
     for (const bool are_meshes : {false, true}) {
@@ -265,6 +296,7 @@ int main() {
     test::Checks checks;
     check_same_fields(checks);
     check_small_caster(checks);
+    check_glowing_pane(checks);
     check_near_lamp(checks);
     check_nothing_to_do(checks);
     return checks.report();
