@@ -38,7 +38,8 @@ def test_the_exported_scene_is_the_one_that_is_measured(scene, exported, name: s
     build(scene, described.description)
     data, messages = exported()
     assert all("usable area" in message for message in messages)  # the poles of spheres
-    settings = DEFAULT.settings(described, 0.0, threads=0)
+    # Of two plans that are nearly as good as each other, rounding may choose one or the other: here there is none.
+    settings = DEFAULT.settings(described, 0.0, threads=0, use_auto=False)
     found, expected = (blocks(Picture(each, settings).run(2).pixels()) for each in (data, described.data()))
     assert found.mean() == pytest.approx(expected.mean(), rel=0.002)
     assert found == pytest.approx(expected, rel=0.02)
