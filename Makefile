@@ -201,7 +201,7 @@ scale: build/native/stamp .venv/chart.stamp .venv/test.stamp
 sweep: build/native/stamp .venv/chart.stamp
 	PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.sweep_bench $(SWEEP)
 
-# Draws build/chart/prediction.png.
+# Draws build/chart/prediction.png: docs/images/prediction.png.
 prediction: build/native/stamp .venv/chart.stamp .venv/system.stamp
 	PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.prediction_bench $(PREDICTION)
 

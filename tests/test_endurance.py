@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import gc
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -14,17 +12,11 @@ from engine.session import Session
 from engine.settings import RenderSettings, Stop
 from engine.viewport_rendering import Request
 from engine.viewport_worker import ViewportWorker
+from tests.resident_memory import resident_bytes
 from tests.shapes import camera
 from tests.test_determinism import still_life
 
 PATIENCE = 60.0  #: seconds after which a test has failed
-PAGE = 4096
-
-
-def resident_bytes() -> int:
-    """Return what the process has in memory."""
-    gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE
 
 
 @pytest.mark.parametrize(

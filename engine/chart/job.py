@@ -151,7 +151,10 @@ class ChartJob:
         self, stack: ExitStack, scene: LoadedScene, camera: Camera, sizes: tuple[Size, Size], reference: Reference,
         half: Session,
     ) -> tuple[Ladder, list[Run], Size]:  # fmt: skip
-        """Render a pass of the variant that has had the least time, again and again; return the radius, too."""
+        """Render a pass of the variant that has had the least time, again and again.
+
+        The size that is returned is the small one with its radius, which only the first pass tells.
+        """
         seen = half.statistics()
         full, small = sizes
 

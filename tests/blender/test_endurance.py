@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import gc
 import random
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -13,14 +11,7 @@ import pytest
 
 from tests.blender.scenes import render, render_with_summary
 from tests.blender.test_interruptions import watch  # noqa: F401
-
-PAGE = 4096
-
-
-def resident_bytes():
-    """Return what the process has in memory."""
-    gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE
+from tests.resident_memory import resident_bytes
 
 
 @pytest.mark.parametrize("count", [pytest.param(6, id="short"), pytest.param(100, id="long", marks=pytest.mark.soak)])

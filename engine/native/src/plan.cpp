@@ -14,10 +14,6 @@ namespace {
 
 constexpr uint32_t watched_pixels = 1024;
 
-/// The power of the squared radius that the squared error by the kernel's width goes with: 2 where light is smooth,
-/// 1/2 at its edges. Between the radii of a plan it was 1.1 to 1.6 behind a narrow gap, 0.5 to 0.75 in closed rooms.
-constexpr double blur_power = 1;
-
 /// Means over the first passes of the squared radius, and of its inverse, over that of the first: by the gamma function
 /// r^2 goes as (pass + 1)^(-1/3) / gamma(5/3) (Knaus and Zwicker 2011, equation 21 with alpha = 2/3).
 double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.66 / passes; }
@@ -39,13 +35,17 @@ double stratified(double passes) {
 struct SquaredError {
     double seen;  ///< noise of what the eye sees without diffuse bounces
     double paths, photons;
-    double blur, lack;
+    /// By the kernels' width, taken to go with their squared radius: it goes with the power 2 of that where light is
+    /// smooth and 1/2 at its edges; between the radii of a plan with 1.1 to 1.6 behind a narrow gap, 0.5 to 0.75 in
+    /// rooms.
+    double blur;
+    double lack;
 
     double after(double passes, bool shrinks) const {
         const double shrunk = shrinks ? mean_squared_radius(passes) : 1;
         const double inverse = shrinks ? mean_inverse_squared_radius(passes) : 1;
         const double noise = seen * stratified(passes) + paths + photons * inverse;
-        return noise / passes + blur * std::pow(shrunk, blur_power) + lack;
+        return noise / passes + blur * shrunk + lack;
     }
 };
 
@@ -101,7 +101,7 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
                 double cost = noise.pixel_cost;
                 if (global > 0) {
                     squared.photons += noise.global.variance * noise.global.count / global / area;
-                    squared.blur += noise.global.blur * std::pow(area, blur_power);
+                    squared.blur += noise.global.blur * area;
                     cost += global * noise.global.cost + noise.gather_cost * global / noise.global.count * area;
                 }
                 if (caustic > 0) {
@@ -214,7 +214,7 @@ void PilotPixels::find_noise(PilotNoise &noise) const {
     // Expected from a difference that noise may have brought about as well: of a kernel to one of a quarter of its
     // area. Few pixels are watched, and one of a sharp corner must not stand for a thousandth of the picture.
     constexpr size_t worst = 100;
-    const double of_difference = std::pow(1 - std::pow(0.25, blur_power / 2), -2);
+    constexpr double of_difference = 4;  // where the error goes with the radius, it is twice what half of it takes away
     const auto blur = [&](Moments Pixel::*part) {
         const double difference = mean_over_pixels(
             [&](const Pixel &p) {
