@@ -4,12 +4,9 @@
 // settings alone: costs are counted in rays, not measured by a clock.
 #pragma once
 
-#include <array>
-#include <atomic>
+#include <cmath>
+#include <cstdint>
 #include <limits>
-#include <vector>
-
-#include "camera_pass.h"
 
 namespace photon_maps {
 
@@ -20,10 +17,11 @@ struct PhotonCounts {
 
 /// What one sort of photons does to the pictures of passes that emit `count`.
 struct MapNoise {
-    double variance = 0;  ///< relative to squared radiance as ErrorEstimate has it
-    double blur = 0;      ///< relative square of the error by the kernel's width
-    double count = 0;     ///< emitted in a pass
-    double cost = 0;      ///< of tracing and storing one of them, in rays
+    double variance = 0;       ///< relative to squared radiance as ErrorEstimate has it
+    double flux_variance = 0;  ///< the part of it that kernels of all widths have: of how many photons come at all
+    double blur = 0;           ///< relative square of the error by the kernel's width
+    double count = 0;          ///< emitted in a pass
+    double cost = 0;           ///< of tracing and storing one of them, in rays
 
     /// Relative standard deviation of a pass that emits so many, by kernels of the same width.
     double deviation(uint64_t emitted) const {
@@ -33,6 +31,8 @@ struct MapNoise {
 
 /// What pilot passes found.
 struct PilotNoise {
+    static constexpr uint32_t passes = 4;  ///< that pilots have
+
     double camera_variance = 0;  ///< of all that photons do not carry
     double direct_variance = 0;  ///< part of it that more light samples take away
     double path_variance = 0;    ///< part of it by diffuse bounces of cameras' paths
@@ -54,87 +54,10 @@ struct Plan {
     double cost = std::numeric_limits<double>::infinity();  ///< in rays, until the picture has its error
 };
 
-/// Chooses what comes to an error in the least time. The variance of a map falls with its photons and with the square
-/// of the radius, its blur grows with the radius.
+/// Chooses what comes to an error in the least time. The variance of a map falls with its photons and, but for that of
+/// flux, with the square of the radius; its blur grows with the radius.
 /// @param error > 0, relative
 /// @param shrinks whether radii shrink from pass to pass (shrunk_radius)
 Plan plan_for(const PilotNoise &noise, double error, bool shrinks);
-
-/// Light that photons bring evenly, and paths sometimes by a few samples of many.
-enum class RareLight { caustics, indirect };
-
-/// Some pixels of the frame, followed over the pilot passes.
-class PilotPixels {
-  public:
-    static constexpr uint32_t passes = 4;
-
-    /// @param is_nested whether caustics are gathered by nested radii
-    PilotPixels(const Camera &camera, bool is_nested);
-
-    /// Renders the pixels in one pass: of `passes` with consecutive indices, so that they stratify each other as those
-    /// of a picture do.
-    /// @throws Cancelled once `cancel` is set
-    void add(const CameraPass &pass, const std::atomic<bool> *cancel);
-
-    /// Rays and estimates of a pixel in a pass, on average, in rays.
-    double pixel_cost() const;
-    /// Light samples of a pixel in a pass at first diffuse vertices, on average.
-    double light_samples() const { return per_pixel(counts_.light_samples); }
-    /// Most that the variance of a pass's light of a kind may be without it showing in the pilots, relative to squared
-    /// radiance: where few samples bring such light, those that happened to come tell little of the others.
-    /// @param photons the same pixels with that light by photons, which tell how much there is to come
-    double hidden_variance(RareLight light, const PilotPixels &photons) const;
-    /// Sets the variances and the blur that the passes tell, once all are added.
-    void find_noise(PilotNoise &noise) const;
-    /// Relative square of the light that the pixels lack on average but others have, as far as noise cannot be the
-    /// reason: what comes too seldom to be seen in any pilot has no variance that would tell.
-    double squared_lack(const PilotPixels &other) const;
-
-  private:
-    /// Sum over the passes of a part of a pixel's radiance, of its squares, and of the first half less the second.
-    struct Moments {
-        Vec3 sum, squares, difference;
-
-        void add(Vec3 value, bool is_of_first_half) {
-            sum += value;
-            squares += value * value;
-            difference += is_of_first_half ? value : -value;
-        }
-    };
-    /// Samples of a kind of light.
-    struct Samples {
-        double sum = 0, squares = 0;
-
-        void add(double value) {
-            sum += value;
-            squares += value * value;
-        }
-        /// By how many samples the light seems to come (Kish 1965).
-        double count() const { return squares > 0 ? sum * sum / squares : 0; }
-    };
-    struct Pixel {
-        uint32_t x, y;  ///< in the frame
-        Moments camera, direct, global, caustic, global_blur, caustic_blur;
-        std::array<Vec3, passes> radiance;
-    };
-
-    std::vector<Vec3> means() const;
-    double per_pixel(uint64_t count) const {
-        return static_cast<double>(count) / static_cast<double>(pixels_.size() * passes);
-    }
-
-    std::vector<Pixel> pixels_;
-    bool is_nested_;
-    uint32_t added_ = 0;
-    RayCounts counts_;
-    Samples caustics_, indirect_;
-};
-
-/// A way to bring the light of diffuse bounces, and what pilot passes tell of it.
-struct Pilot {
-    Indirect indirect;
-    PilotPixels pixels;
-    PilotNoise noise;
-};
 
 }  // namespace photon_maps

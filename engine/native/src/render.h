@@ -12,7 +12,7 @@
 #include "map_cache.h"
 #include "photon_snapshot.h"
 #include "photon_trace.h"
-#include "plan.h"
+#include "pilot_pixels.h"
 
 namespace photon_maps {
 
@@ -126,7 +126,7 @@ class Render {
         Plan plan;
         double pilot_cost;  ///< in rays
     };
-    std::optional<Choice> choose_by_pilots(uint32_t first, const PhotonCounts &usual, float widened);
+    std::optional<Choice> choose_by_pilots(uint32_t first, const PhotonCounts &usual);
     std::vector<Indirect> ways() const;
     std::vector<Pilot> run_pilot_passes(uint32_t first);
     CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,

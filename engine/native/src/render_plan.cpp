@@ -14,8 +14,8 @@ namespace {
 /// The largest of the nested radii over one that must serve all pixels: too large for many does no harm.
 constexpr float largest_nested = 1.4f;
 /// The global map's kernel in pilot passes over the one that serves without a plan: blur shows better in a large one,
-/// and where there is none the large one has less noise.
-constexpr float pilot_radius = 1.41f;
+/// where there is less noise.
+constexpr float pilot_radius = 2;
 
 }  // namespace
 
@@ -172,7 +172,7 @@ void Render::make_plan() {
     // See what a few passes of few photons bring to some pixels.
     const PhotonCounts usual = counts_;
     counts_ = {std::min(usual.global, few_pilot_photons), std::min(usual.caustic, few_pilot_photons)};
-    std::optional<Choice> choice = choose_by_pilots(0, usual, pilot_radius);
+    std::optional<Choice> choice = choose_by_pilots(0, usual);
     if (!choice) {  // noise beyond all numbers tells nothing
         counts_ = usual;
         return;
@@ -187,10 +187,7 @@ void Render::make_plan() {
             return is_limited_ ? std::min(wanted, with_room) : wanted;
         };
         counts_ = {more(counts_.global, usual.global), more(counts_.caustic, usual.caustic)};
-        const float widened = std::max(1.0f, choice->plan.global_radius);
-        set_radii({first_radii_->indirect * widened, first_radii_->caustic});
-        if (auto second = choose_by_pilots(PilotPixels::passes, usual, pilot_radius * widened))
-            choice = std::move(second);
+        if (auto second = choose_by_pilots(PilotPixels::passes, usual)) choice = std::move(second);
     }
 
     const Plan &plan = choice->plan;
@@ -209,14 +206,13 @@ void Render::make_plan() {
 /// pictures are made for.
 /// @param first as of run_pilot_passes()
 /// @param usual photons without a plan
-/// @param widened the global map's radius over that without a plan
 /// @return nothing if no way has a cost
-std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const PhotonCounts &usual, float widened) {
+std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const PhotonCounts &usual) {
     std::vector<Pilot> pilots = run_pilot_passes(first);
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
-    const double photons_in_kernel = double{usual_photons_in_kernel} * widened * widened *
+    const double photons_in_kernel = double{usual_photons_in_kernel} * pilot_radius * pilot_radius *
                                      static_cast<double>(counts_.global) / static_cast<double>(usual.global);
     pilots.front().noise.gather_cost =
         static_cast<double>(camera_.frame_width) * camera_.frame_height * photon_cost * photons_in_kernel;

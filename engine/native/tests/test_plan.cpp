@@ -12,7 +12,7 @@ namespace {
 PilotNoise room() {
     PilotNoise noise;
     noise.camera_variance = 0.01;
-    noise.global = {0.01, 1e-7, 8192, 2};
+    noise.global = {.variance = 0.01, .flux_variance = 0, .blur = 1e-7, .count = 8192, .cost = 2};
     noise.pixel_cost = 200'000;
     noise.gather_cost = 1'000;
     return noise;
@@ -67,6 +67,15 @@ void check_radius(Checks &checks) {
     checks.that(plan_for(blurred, 0.01, true).global_radius < 0.8f, "blur beyond the error wants smaller kernels");
     checks.that(plan_for(blurred, 0.05, true).global_radius > plan_for(blurred, 0.005, true).global_radius,
                 "the less error, the less blur");
+
+    // Behind a narrow gap it is how many photons come at all that makes the noise: no kernel can be too narrow.
+    PilotNoise gap = blurred;
+    gap.global.flux_variance = gap.global.variance;
+    checks.that(plan_for(gap, 0.01, true).global_radius < 0.2f, "noise of the flux wants small kernels");
+    gap.camera_variance = gap.global.blur = 0;
+    const Plan plan = plan_for(gap, 1e-3, true);
+    const double each = gap.global.variance * gap.global.count / static_cast<double>(plan.counts.global);
+    checks.near(plan.passes * 1e-6 / each, 1, 1e-3, "noise of the flux falls as that of independent passes");
 }
 
 void check_bounds(Checks &checks) {
@@ -82,7 +91,7 @@ void check_bounds(Checks &checks) {
     checks.that(plan_for(lacking, 0.02, true).cost > 100 * plan_for(room(), 0.02, true).cost, "light that never comes");
     PilotNoise caustic;
     caustic.camera_variance = 0.01;
-    caustic.caustic = {0.01, 0, 8192, 3};
+    caustic.caustic = {.variance = 0.01, .flux_variance = 0, .blur = 0, .count = 8192, .cost = 3};
     caustic.pixel_cost = 200'000;
     const Plan plan = plan_for(caustic, 0.01, true);
     checks.that(plan.counts.global == 0 && plan.counts.caustic > 8192, "caustics alone");

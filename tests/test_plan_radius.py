@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from photon_maps_native import SceneData, diffuse
+
+from benchmarks.chart.scenes import SCENES
+from engine.settings import AUTOMATIC
+from tests.shapes import Picture, box, box_filtered, camera, scene
+
+SEEDS = range(6)
+
+
+def chosen_over_usual(data: SceneData) -> float:
+    """Return the first radius by pilot passes over that without a plan: the geometric mean over some seeds."""
+    settings = box_filtered(**AUTOMATIC)
+    usual = Picture(data, replace(settings, use_auto=False)).run(1).render.statistics().radius_first
+    chosen = [Picture(data, replace(settings, seed=seed)).run(1).render.statistics().radius_first for seed in SEEDS]
+    return float(np.exp(np.mean(np.log(chosen))) / usual)
+
+
+def test_what_kernels_do_not_blur_gets_wide_ones() -> None:
+    # A closed cube whose walls all shine: light is even, and noise alone differs from kernel to kernel.
+    view = camera((-0.6, -0.55, -0.5), (1, 1, 1), (64, 64), half_angle=0.75)
+    furnace = scene([box((-1, -1, -1), (1, 1, 1))], view, [diffuse((0.8,) * 3, (1.0,) * 3)])
+    assert chosen_over_usual(furnace) > 1.5
+
+
+def test_behind_a_gap_kernels_are_narrow() -> None:
+    assert chosen_over_usual(SCENES["gap"].data()) < 0.9
