@@ -32,18 +32,37 @@ struct SquaredError {
     double independent;  ///< noise of what neither passes stratify nor radii change
     double photons;
     /// By the kernels' width, taken to go with their squared radius: it goes with the power 2 of that where light is
-    /// smooth and 1/2 at its edges; between the radii of a plan with 1.1 to 1.6 behind a narrow gap, 0.5 to 0.75 in
-    /// rooms.
+    /// smooth and 1/2 at its edges; in seven scenes between the pilots' radius and half of it with 0.8 to 1.7.
     double blur;
     double lack;
 
+    /// That of each of so many passes.
+    double noise(double passes, bool shrinks) const {
+        return seen * stratified(passes) + independent + photons * (shrinks ? mean_inverse_squared_radius(passes) : 1);
+    }
+    /// That of their mean.
     double after(double passes, bool shrinks) const {
-        const double shrunk = shrinks ? mean_squared_radius(passes) : 1;
-        const double inverse = shrinks ? mean_inverse_squared_radius(passes) : 1;
-        const double noise = seen * stratified(passes) + independent + photons * inverse;
-        return noise / passes + blur * shrunk + lack;
+        return noise(passes, shrinks) / passes + blur * (shrinks ? mean_squared_radius(passes) : 1) + lack;
     }
 };
+
+/// @param global, caustic photons of a pass, 0 where there is no such map
+/// @param radius over that of the pilot passes
+SquaredError squared_error(const PilotNoise &noise, double global, double caustic, double radius) {
+    SquaredError squared{.seen = noise.camera_variance - noise.path_variance,
+                         .independent = noise.path_variance,
+                         .photons = 0,
+                         .blur = noise.caustic.blur,
+                         .lack = noise.lack};
+    if (global > 0) {
+        const double area = radius * radius, share = noise.global.count / global;
+        squared.independent += noise.global.flux_variance * share;
+        squared.photons += (noise.global.variance - noise.global.flux_variance) * share / area;
+        squared.blur += noise.global.blur * area;
+    }
+    if (caustic > 0) squared.photons += noise.caustic.variance * noise.caustic.count / caustic;
+    return squared;
+}
 
 /// Passes until the error is small enough.
 double passes_needed(const SquaredError &squared, double error, bool shrinks) {
@@ -80,24 +99,10 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
     for (const double global : counts_of(noise.global))
         for (const double caustic : counts_of(noise.caustic))
             for (const double radius : radii) {
-                const double area = radius * radius;
-                SquaredError squared{.seen = noise.camera_variance - noise.path_variance,
-                                     .independent = noise.path_variance,
-                                     .photons = 0,
-                                     .blur = noise.caustic.blur,
-                                     .lack = noise.lack};
-                double cost = noise.pixel_cost;
-                if (global > 0) {
-                    const double share = noise.global.count / global;
-                    squared.independent += noise.global.flux_variance * share;
-                    squared.photons += (noise.global.variance - noise.global.flux_variance) * share / area;
-                    squared.blur += noise.global.blur * area;
-                    cost += global * noise.global.cost + noise.gather_cost * global / noise.global.count * area;
-                }
-                if (caustic > 0) {
-                    squared.photons += noise.caustic.variance * noise.caustic.count / caustic;
-                    cost += caustic * noise.caustic.cost;
-                }
+                const double gathered = global > 0 ? global / noise.global.count * radius * radius : 0;
+                const double cost = noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost +
+                                    noise.gather_cost * gathered;
+                const SquaredError squared = squared_error(noise, global, caustic, radius);
                 const double passes = passes_needed(squared, error, shrinks);
                 if (cost * passes >= best.cost) continue;
                 best = {.counts = {static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
@@ -112,19 +117,11 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
 /// @param plan with one of them
 uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan, bool shrinks) {
     constexpr double most = 16;
-    const PhotonCounts &counts = plan.counts;
-    const double area = double{plan.global_radius} * double{plan.global_radius};
-    const auto photons = [](const MapNoise &map, uint64_t count) {
-        return count > 0 ? map.variance * map.count / static_cast<double>(count) : 0;
-    };
-    const auto traced = [](const MapNoise &map, uint64_t count) { return map.cost * static_cast<double>(count); };
-    const double shrink = stratified(plan.passes);
-    const double direct = noise.direct_variance * shrink;
-    const double inverse = shrinks ? mean_inverse_squared_radius(plan.passes) : 1;
-    const double other =
-        (noise.camera_variance - noise.path_variance) * shrink - direct + noise.path_variance +
-        (photons(noise.global, counts.global) / area + photons(noise.caustic, counts.caustic)) * inverse;
-    const double cost = noise.pixel_cost + traced(noise.global, counts.global) + traced(noise.caustic, counts.caustic);
+    const auto global = static_cast<double>(plan.counts.global), caustic = static_cast<double>(plan.counts.caustic);
+    const SquaredError squared = squared_error(noise, global, caustic, double{plan.global_radius});
+    const double direct = noise.direct_variance * stratified(plan.passes);
+    const double other = squared.noise(plan.passes, shrinks) - direct;
+    const double cost = noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost;
     // With k samples: (other + direct / k) * (cost + k * light_cost).
     if (noise.light_cost == 0 || direct == 0) return 1;
     const double best = std::sqrt(direct * cost / (std::max(other, 1e-12) * noise.light_cost));
