@@ -300,15 +300,17 @@ build/replay/replay build/replay/replay.exe: $(REPLAY_SOURCES) engine/native/src
 # The checks of what is vectorized.
 VECTORIZED := test_photon_map test_filter test_estimate test_nested_estimate
 
-# Wine stands for Windows, qemu for processors without AVX2.
+# Wine stands for Windows, qemu for processors without AVX2 and for those without AVX-512.
 test-wine: .venv/test.stamp build/native/stamp build/replay/replay build/replay/replay.exe $(PACKAGES)
 	@[ -x /usr/lib/wine/wine64 ] && command -v qemu-x86_64 >/dev/null || bash tools/apt_install.sh wine64 qemu-user
 	timeout 1800 $(PYTHON) -m pytest tests/platforms
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
 	cmake --build build/cmake/release --target $(VECTORIZED)
 	@for check in $(VECTORIZED); do \
-	    echo "$$check without AVX2"; \
-	    PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) qemu-x86_64 -cpu Nehalem build/cmake/release/$$check || exit 1; \
+	    for processor in Nehalem Haswell; do \
+	        echo "$$check on $$processor"; \
+	        PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) qemu-x86_64 -cpu $$processor build/cmake/release/$$check || exit 1; \
+	    done; \
 	done
 
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)

@@ -121,6 +121,13 @@ def test_windows_makes_the_same_pictures(recording, expected, tmp_path_factory):
     assert difference(pictures, expected) <= 1e-4
 
 
+@pytest.mark.parametrize("lacking", ["AVX512", "AVX2"])
+def test_the_pictures_are_the_same_bits_without(lacking, recording, on_linux, expected):
+    """Embree chooses for itself and is not held back."""
+    pictures = replay([str(BUILD / "replay")], on_linux, recording, **{f"PHOTON_MAPS_WITHOUT_{lacking}": "1"})
+    np.testing.assert_array_equal(pictures, expected)
+
+
 def test_a_processor_without_avx2_makes_the_same_pictures(on_linux, tmp_path):
     # One short pass: qemu takes some thirty times as long.
     recording = tmp_path / "recording"
