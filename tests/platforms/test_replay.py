@@ -69,11 +69,13 @@ def recording(tmp_path_factory) -> Path:
     return path
 
 
-def replay(program: list[str], libraries: tuple[str, str], recording: Path, **environment: str) -> np.ndarray:
+def replay(
+    program: list[str], libraries: tuple[str, str], recording: Path, *options: str, **environment: str
+) -> np.ndarray:
     """Run the recording and return the pictures, one after the other."""
     pictures = recording.with_name("pictures")
     result = subprocess.run(
-        [*program, *libraries, recording.name, pictures.name],
+        [*program, *libraries, recording.name, pictures.name, *options],
         cwd=recording.parent,
         env={**os.environ, **environment},
         capture_output=True,
@@ -112,13 +114,36 @@ def test_the_recording_says_all(recording, expected, tmp_path):
     assert difference(expected[: picture.size], picture) <= 1e-5
 
 
-def test_windows_makes_the_same_pictures(recording, expected, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("windows")
-    libraries = unpacked("windows-x64", folder)
-    paths = (f"Z:{libraries.native}".replace("/", "\\"), f"Z:{libraries.embree}".replace("/", "\\"))
+def windows_path(path: Path) -> str:
+    """Return a path as wine names it."""
+    return f"Z:{path}".replace("/", "\\")
+
+
+def replay_on_windows(libraries: Libraries, recording: Path, *options: str) -> np.ndarray:
+    """Run the recording under wine."""
+    paths = (windows_path(libraries.native), windows_path(libraries.embree))
     environment = {"WINEPREFIX": str(ROOT / "build" / "wine"), "WINEDEBUG": "-all"}
-    pictures = replay([WINE, str(BUILD / "replay.exe")], paths, recording, **environment)
-    assert difference(pictures, expected) <= 1e-4
+    return replay([WINE, str(BUILD / "replay.exe")], paths, recording, *options, **environment)
+
+
+@pytest.fixture
+def on_windows(tmp_path) -> Libraries:
+    """The libraries of the Windows package."""
+    return unpacked("windows-x64", tmp_path)
+
+
+def test_windows_makes_the_same_pictures(recording, expected, on_windows):
+    assert difference(replay_on_windows(on_windows, recording), expected) <= 1e-4
+
+
+def test_windows_can_remove_the_helper_after_a_render(recording, on_windows):
+    """It cannot remove what is loaded, as Embree still is."""
+    replay_on_windows(on_windows, recording, "remove", windows_path(on_windows.native))
+    assert not on_windows.native.exists()
+    with pytest.raises(RuntimeError, match="in remove: Access denied"):
+        replay_on_windows(
+            unpacked("windows-x64", on_windows.native.parents[1]), recording, "remove", windows_path(on_windows.embree)
+        )
 
 
 @pytest.mark.parametrize("lacking", ["AVX512", "AVX2"])
