@@ -68,6 +68,11 @@ def test_a_package_holds_what_its_platform_needs(platform):
 
 
 @pytest.mark.parametrize("platform", MANIFEST["platforms"])
+def test_a_library_does_not_know_where_it_was_built(platform):
+    assert str(ROOT).encode() not in library(platform)
+
+
+@pytest.mark.parametrize("platform", MANIFEST["platforms"])
 def test_a_package_is_the_same_when_built_again(platform, tmp_path):
     again = tmp_path / "again.zip"
     command = [sys.executable, ROOT / "tools" / "package.py", "--platform", platform, "--output", again]
