@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The libraries that users get, on systems and processors other than this machine's: the same pictures.
 
-Windows is stood for by wine, processors without AVX2 by qemu; both run the very files of the packages.
+Windows is stood for by wine, older processors by qemu; both run the very files of the packages.
 """
 
 from __future__ import annotations
@@ -89,10 +89,15 @@ def replay(
     return values
 
 
-def difference(pictures: np.ndarray, expected: np.ndarray) -> float:
-    """Return the largest difference of a pixel over its value, or over the mean where it is darker."""
+def differences(pictures: np.ndarray, expected: np.ndarray) -> np.ndarray:
+    """Return the difference of each pixel over its value, or over the mean where it is darker."""
     assert pictures.shape == expected.shape
-    return float((np.abs(pictures - expected) / np.maximum(expected, expected.mean())).max())
+    return np.abs(pictures - expected) / np.maximum(expected, expected.mean())
+
+
+def difference(pictures: np.ndarray, expected: np.ndarray) -> float:
+    """Return the largest of them."""
+    return float(differences(pictures, expected).max())
 
 
 @pytest.fixture(scope="module")
@@ -153,15 +158,20 @@ def test_the_pictures_are_the_same_bits_without(lacking, recording, on_linux, ex
     np.testing.assert_array_equal(pictures, expected)
 
 
-def test_a_processor_without_avx2_makes_the_same_pictures(on_linux, tmp_path):
-    # One short pass: qemu takes some thirty times as long.
-    recording = tmp_path / "recording"
-    record(recording, (CAUSTIC,), passes=1, threads=1, photon_count=5000)
-    slow = ["qemu-x86_64", "-cpu", "Nehalem", str(BUILD / "replay")]
-    expected = replay([str(BUILD / "replay")], on_linux, recording)
-    assert expected.mean() > 0.01
-    # Embree has other kernels there, whose last bits a single pass of few photons through glass carries on.
-    assert difference(replay(slow, on_linux, recording), expected) <= 1e-3
+@pytest.mark.parametrize("processor", ["Nehalem", "Haswell"])
+def test_an_older_processor_makes_the_same_pictures(processor, on_linux, tmp_path):
+    """One without AVX2, and one without AVX-512. Short passes: qemu takes some thirty times as long."""
+    slow = ["qemu-x86_64", "-cpu", processor, str(BUILD / "replay")]
+    found = {}
+    for scene in (CORNELL, CAUSTIC):
+        recording = tmp_path / scene.name
+        record(recording, (scene,), passes=1, threads=1, photon_count=5000)
+        expected = replay([str(BUILD / "replay")], on_linux, recording)
+        assert expected.mean() > 0.01
+        found[scene.name] = differences(replay(slow, on_linux, recording), expected)
+    assert found[CORNELL.name].max() <= 1e-4
+    # Embree has other kernels there, and what their last bits change glass carries on: all but a few rays at its rim.
+    assert np.quantile(found[CAUSTIC.name], 1 - 1e-4) <= 1e-4
 
 
 def test_a_processor_that_is_too_old_is_told(recording, on_linux):
