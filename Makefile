@@ -268,7 +268,8 @@ test-gui: .venv/test.stamp dist/photon_maps-$(VERSION)-linux-x64.zip
 	bash tests/gui/blender.sh "$${BLENDER_ROOT:-build/blender-trixie}"
 	timeout 3000 $(PYTHON) -m pytest tests/gui -o pythonpath=.
 
-# One environment for each Blender that is a Python module. BLENDER_ROOT: an application besides, as for test-gui.
+# One environment for each Blender that is a Python module. BLENDER_ROOT: folders of applications besides, as
+# for test-gui, with colons between them.
 VERSIONS := 4.2.23 4.5.15 5.0.1 5.2.3
 PYTHON_OF_4.2.23 := 3.11
 PYTHON_OF_4.5.15 := 3.11
@@ -300,16 +301,22 @@ build/replay/replay build/replay/replay.exe: $(REPLAY_SOURCES) engine/native/src
 # The checks of what is vectorized.
 VECTORIZED := test_photon_map test_filter test_estimate test_nested_estimate
 
-# Wine stands for Windows, qemu for processors without AVX2.
+# Wine stands for Windows, qemu for processors without AVX2, for those without AVX-512, and for ARM with its NEON.
 test-wine: .venv/test.stamp build/native/stamp build/replay/replay build/replay/replay.exe $(PACKAGES)
 	@[ -x /usr/lib/wine/wine64 ] && command -v qemu-x86_64 >/dev/null || bash tools/apt_install.sh wine64 qemu-user
 	timeout 1800 $(PYTHON) -m pytest tests/platforms
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE))
 	cmake --build build/cmake/release --target $(VECTORIZED)
 	@for check in $(VECTORIZED); do \
-	    echo "$$check without AVX2"; \
-	    PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) qemu-x86_64 -cpu Nehalem build/cmake/release/$$check || exit 1; \
+	    for processor in Nehalem Haswell; do \
+	        echo "$$check on $$processor"; \
+	        PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) qemu-x86_64 -cpu $$processor build/cmake/release/$$check || exit 1; \
+	    done; \
 	done
+	cmake -S engine/native -B build/cmake/arm -DPHOTON_MAPS_TESTS=ON -DZIG_COMPILER=$(ZIG) -DZIG_TARGET=aarch64-linux-musl \
+	    -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/engine/native/zig.cmake
+	cmake --build build/cmake/arm --target $(VECTORIZED)
+	@for check in $(VECTORIZED); do echo "$$check on ARM"; qemu-aarch64 build/cmake/arm/$$check || exit 1; done
 
 test-campaign: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	$(PYTHON) -m pytest tests $(WITHOUT_BLENDER) -m campaign

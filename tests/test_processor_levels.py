@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 SCRIPT = """
 import sys
@@ -21,10 +22,11 @@ np.save(sys.argv[1], np.stack(pictures))
 """
 
 
-def test_the_picture_is_the_same_bits_without_avx2(tmp_path):
+@pytest.mark.parametrize("lacking", ["AVX512", "AVX2"])
+def test_the_picture_is_the_same_bits_without(lacking, tmp_path):
     """The C++ checks of the same name show that the variable does what it says."""
     pictures = []
-    for name, more in (("as_it_is", {}), ("without", {"PHOTON_MAPS_WITHOUT_AVX2": "1"})):
+    for name, more in (("as_it_is", {}), ("without", {f"PHOTON_MAPS_WITHOUT_{lacking}": "1"})):
         path = tmp_path / f"{name}.npy"
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **more}
         command = [sys.executable, "-c", SCRIPT, path]

@@ -139,6 +139,18 @@ def test_a_wrong_embree_is_said_in_the_panel_and_blender_goes_on(corner, extensi
     assert render(corner)["Combined"][..., :3].mean() > 0.01
 
 
+def test_a_missing_embree_is_said_in_the_panel_and_blender_goes_on(corner, extension, monkeypatch):
+    import sys
+
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "embreex", None)
+        with pytest.raises(RuntimeError, match="embreex is missing"):
+            bpy.ops.render.render()
+    (said,) = extension.engine.last_render.recall(corner.session_uid, bpy.context.view_layer.name).messages
+    assert said.object == corner.name and "reinstall the extension" in said.text
+    assert render(corner)["Combined"][..., :3].mean() > 0.01
+
+
 def test_no_camera_is_said(scene):
     with pytest.raises(RuntimeError, match="no camera"):
         bpy.ops.render.render()

@@ -68,6 +68,11 @@ def test_a_package_holds_what_its_platform_needs(platform):
 
 
 @pytest.mark.parametrize("platform", MANIFEST["platforms"])
+def test_a_library_does_not_know_where_it_was_built(platform):
+    assert str(ROOT).encode() not in library(platform)
+
+
+@pytest.mark.parametrize("platform", MANIFEST["platforms"])
 def test_a_package_is_the_same_when_built_again(platform, tmp_path):
     again = tmp_path / "again.zip"
     command = [sys.executable, ROOT / "tools" / "package.py", "--platform", platform, "--output", again]
@@ -95,6 +100,21 @@ def test_windows_shows_the_interface_and_needs_only_the_system(tmp_path):
     assert set(re.findall(r"\b(pm_\w+)$", table.split("\n\n")[0], re.MULTILINE)) == DECLARED
 
 
+def assert_signed(data: bytes, begin: int, size: int) -> None:
+    """Assert that a signature is of these bytes: by its superblob and the code directory in it (xnu, cs_blobs.h)."""
+    magic, length, count, _, offset = struct.unpack_from(">5I", data, begin)
+    assert magic == 0xFADE0CC0 and count == 1 and length <= size and begin + size == len(data)
+    directory = begin + offset
+    magic, _, _, flags, hashes, _, _, pages, end = struct.unpack_from(">9I", data, directory)
+    hash_size, hash_type, _, page_bits = struct.unpack_from("4B", data, directory + 36)
+    assert (magic, hash_size, hash_type) == (0xFADE0C02, 32, 2) and flags & 2  # SHA-256, ad hoc
+    assert end == begin and pages == -(-end // (1 << page_bits)) > 10
+    for page in range(pages):
+        bytes_of_page = data[page << page_bits : min((page + 1) << page_bits, end)]
+        at = directory + hashes + page * hash_size
+        assert hashlib.sha256(bytes_of_page).digest() == data[at : at + hash_size], page
+
+
 @pytest.mark.parametrize("platform", [name for name in MANIFEST["platforms"] if name.startswith("macos")])
 def test_macos_runs_from_version_11_on_and_is_signed(platform):
     """By the load commands of Mach-O (mach-o/loader.h): LC_BUILD_VERSION 0x32, LC_CODE_SIGNATURE 0x1d, and symbols."""
@@ -111,7 +131,8 @@ def test_macos_runs_from_version_11_on_and_is_signed(platform):
     system, oldest = struct.unpack_from("<2I", data, build + 8)
     assert (system, oldest >> 16) == (1, 11)  # macOS
     if platform == "macos-arm64":  # there nothing runs unsigned
-        assert len(commands[0x1D]) == 1
+        (signature,) = commands[0x1D]
+        assert_signed(data, *struct.unpack_from("<2I", data, signature + 8))
     (table,) = commands[0x2]  # LC_SYMTAB
     symbols, number, strings, _ = struct.unpack_from("<4I", data, table + 8)
     exported = set()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import platform
 import sys
 import tomllib
 from pathlib import Path
@@ -158,7 +159,9 @@ def mapped_libraries() -> list[str]:
 
 def session(older: str, newer: str, folder: Path) -> None:
     """The whole session."""
-    found: dict[str, object] = {"blender": bpy.app.version_string}
+    found: dict[str, object] = {"blender": bpy.app.version_string, "python": platform.python_version()}
+    found["system"] = f"{platform.system()} {platform.machine()}"
+    found["run_as"] = "application" if bpy.app.binary_path else "Python module"
     pictures = {}
 
     # An older version is installed and used; the newer one takes its place.

@@ -2,8 +2,8 @@
 """What users get, in every Blender that can be had: installed, updated, rendered with, removed; and the same pixels.
 
 VERSIONS: a folder with a Python environment for each version of Blender. PLATFORM: instead of those, the Blender of the
-Python that runs this, with the package of that platform. BLENDER_ROOT: a folder that holds a Blender application, as
-`bash tests/gui/blender.sh` makes it, if that is to be tried, too.
+Python that runs this, with the package of that platform. BLENDER_ROOT: folders that hold a Blender application each, as
+`bash tests/gui/blender.sh` makes them, with colons between them, if those are to be tried, too.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ VERSIONS = Path(os.environ.get("VERSIONS", ROOT / "build" / "versions"))
 BLENDERS = {path.name: str(path / "bin" / "python") for path in sorted(VERSIONS.glob("[0-9]*"))}
 if "PLATFORM" in os.environ:
     BLENDERS = {"here": sys.executable}
-APPLICATION = [os.environ["BLENDER_ROOT"]] if os.environ.get("BLENDER_ROOT") else []
+APPLICATIONS = [root for root in os.environ.get("BLENDER_ROOT", "").split(":") if root]
 #: Blender's transforms, normals and textures differ in the last bit between versions; refraction carries that on.
 TOLERANCE = 1e-5
 
@@ -100,7 +100,7 @@ def session(request, older, tmp_path_factory) -> Session:
     return made
 
 
-@pytest.fixture(scope="module", params=APPLICATION)
+@pytest.fixture(scope="module", params=APPLICATIONS)
 def application(request, older) -> Session:
     """A session in a Blender application, in a folder of its own there."""
     root = Path(request.param)
@@ -124,15 +124,20 @@ def expected() -> dict[str, np.ndarray]:
     return {}
 
 
-def check(session: Session, expected: dict[str, np.ndarray]) -> None:
-    """Assert what holds in every Blender; the first one's pictures are expected of the others."""
+def check(session: Session, expected: dict[str, np.ndarray]) -> dict[str, str]:
+    """Assert what holds in every Blender; the first one's pictures are expected of the others.
+
+    :return: what conftest.py puts into a row of its table
+    """
     found, pictures = session.found, session.pictures
 
     # Every picture has light in it, and is that of the other versions.
+    differences = []
     for name, picture in pictures.items():
         assert np.isfinite(picture).all() and picture[..., :3].mean() > 0.01, name
         first = expected.setdefault(name, picture)
-        assert np.abs(picture - first).max() <= TOLERANCE * np.abs(first).max(), name
+        differences.append(np.abs(picture - first).max() / np.abs(first).max())
+        assert differences[-1] <= TOLERANCE, name
     for name in ("enabled_again", "installed_again"):
         assert np.array_equal(pictures[name], pictures["corner"])
 
@@ -144,19 +149,28 @@ def check(session: Session, expected: dict[str, np.ndarray]) -> None:
 
     # Two Embrees, each of which went its own way.
     assert found["cycles_is_the_same"]
-    if not sys.platform.startswith("linux"):
-        return
     embrees = {Path(library).parent for library in found["libraries"] if "libembree4" in Path(library).name}
-    assert len([folder for folder in embrees if folder.name == "embreex.libs"]) == 1 and len(embrees) == 2
+    if sys.platform.startswith("linux"):
+        assert len([folder for folder in embrees if folder.name == "embreex.libs"]) == 1 and len(embrees) == 2
+    return {
+        "Blender": found["blender"],
+        "as": found["run_as"],
+        "Python": found["python"],
+        "system": found["system"],
+        "pictures": str(len(pictures)),
+        "largest difference": f"{max(differences):.1e}",
+        "Embrees in the process": str(len(embrees) or "not looked at"),
+        "left behind": "nothing" if found["left_behind_at_the_end"] == [] else "files in use",
+    }
 
 
 def test_every_blender_has_its_environment():
     assert BLENDERS, "run `make test-versions`"
 
 
-def test_a_session(session, expected):
-    check(session, expected)
+def test_a_session(session, expected, record_property):
+    record_property("row", check(session, expected))
 
 
-def test_a_session_in_the_application(application, expected):
-    check(application, expected)
+def test_a_session_in_the_application(application, expected, record_property):
+    record_property("row", check(application, expected))

@@ -25,9 +25,10 @@ std::wstring wide(const std::string &utf8) {
 }  // namespace
 
 // The libraries beside it come before those of the process's own folder.
-DynamicLibrary::DynamicLibrary(const std::string &path)
+DynamicLibrary::DynamicLibrary(const std::string &path, Stay stay)
     : handle_(LoadLibraryExW(wide(path).c_str(), nullptr, LOAD_WITH_ALTERED_SEARCH_PATH)) {
     if (!handle_) throw LibraryError(std::system_category().message(static_cast<int>(GetLastError())));
+    if (stay == Stay::while_used) return;
     HMODULE pinned = nullptr;
     GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_PIN, wide(path).c_str(), &pinned);
 }
@@ -46,14 +47,15 @@ namespace {
 // them. The sanitizers' runtimes refuse that flag, and run in no process with a second Embree. macOS has no
 // such flag: there a library names those that it binds to.
 #if defined(RTLD_DEEPBIND) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | RTLD_DEEPBIND;
+constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #else
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;
+constexpr int load_flags = RTLD_NOW | RTLD_LOCAL;
 #endif
 
 }  // namespace
 
-DynamicLibrary::DynamicLibrary(const std::string &path) : handle_(dlopen(path.c_str(), load_flags)) {
+DynamicLibrary::DynamicLibrary(const std::string &path, Stay stay)
+    : handle_(dlopen(path.c_str(), stay == Stay::to_the_end ? load_flags | RTLD_NODELETE : load_flags)) {
     if (handle_) return;
     const char *reason = dlerror();
     throw LibraryError(reason ? reason : path);

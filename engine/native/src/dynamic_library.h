@@ -13,12 +13,15 @@ struct LibraryError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A loaded library, which stays in the process to its end: the library's own threads may sleep in its code.
+/// How long a library stays loaded: to the end of the process where the library's own threads may sleep in its code.
+enum class Stay { to_the_end, while_used };
+
+/// A loaded library.
 class DynamicLibrary {
   public:
     /// @param path in UTF-8
     /// @throws LibraryError with the system's own reason
-    explicit DynamicLibrary(const std::string &path);
+    DynamicLibrary(const std::string &path, Stay stay);
 
     /// Sets a pointer to the function of that name.
     /// @throws LibraryError if there is none

@@ -51,7 +51,7 @@ constexpr int error_out_of_memory = 4, error_cancelled = 6;
 Embree::Embree(const std::string &path) {
     check_processor();
     try {
-        library_.emplace(path);
+        library_.emplace(path, Stay::to_the_end);
         functions_ = resolve_functions(*library_);
     } catch (const LibraryError &error) {
         throw EmbreeError(std::string("Embree cannot be loaded: ") + error.what());

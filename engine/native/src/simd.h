@@ -86,6 +86,12 @@ template <typename Work>
 [[gnu::flatten, gnu::target("avx2")]] auto with_avx2(const Work &work) {
     return work();
 }
+
+/// Without AVX-512BW, for GCC would keep numbers in its 64-bit masks: a fifth slower.
+template <typename Work>
+[[gnu::flatten, gnu::target("avx2,avx512f,avx512vl")]] auto with_avx512(const Work &work) {
+    return work();
+}
 #endif
 
 template <typename Work>
@@ -93,11 +99,12 @@ template <typename Work>
     return work();
 }
 
-/// Returns work(), compiled for 256-bit vectors as well where processors differ, and chosen when it runs.
+/// Returns work(), compiled for AVX2 and for AVX-512 as well where processors differ, and chosen when it runs.
 /// @param work what it calls must be inlined
 template <typename Work>
 auto vectorized(const Work &work) {
 #if defined(__x86_64__)
+    if (has_avx512) return with_avx512(work);
     if (has_avx2) return with_avx2(work);
 #endif
     return with_any_processor(work);

@@ -211,7 +211,7 @@ void check_radius_holding(test::Checks &checks) {
                            pack_direction(-up)});
     }
     const PhotonMap map(photons, 1, nullptr);
-    for (const size_t k : {1, 10, 100, 3000}) {
+    for (const size_t k : std::initializer_list<size_t>{1, 10, 100, 3000}) {
         const Query query{{0.3f * uniform(random), 0.3f * uniform(random), 0}, up, up};
         const float radius = radius_holding(map, query, k, 1);
         const auto count = [&](float r) {
@@ -235,7 +235,7 @@ void check_kernel_of_nearest(test::Checks &checks) {
             {{uniform(random), uniform(random), 0}, {1, 1, 1}, pack_normal(normal, 0), pack_direction(-up)});
     }
     const PhotonMap map(photons, 1, nullptr);
-    for (const size_t count : {1, 2, 10, 100, 1000}) {
+    for (const size_t count : std::initializer_list<size_t>{1, 2, 10, 100, 1000}) {
         double mean = 0;
         int fewer = 0;
         constexpr int rounds = 2000;

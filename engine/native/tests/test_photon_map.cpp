@@ -40,7 +40,7 @@ Sets position_sets() {
     Sets sets;
     sets["none"] = {};
     sets["one"] = {{1, 2, 3}};
-    for (const size_t count : {2, 7, 8, 9, 31, 32, 33, 64, 65, 1000}) {
+    for (const size_t count : std::initializer_list<size_t>{2, 7, 8, 9, 31, 32, 33, 64, 65, 1000}) {
         sets["random " + std::to_string(count)] = many(count, [&](size_t) { return point(); });
     }
     sets["random 200000"] = many(200000, [&](size_t) { return point(); });
@@ -165,7 +165,7 @@ int main() {
             check_range(checks, name, map, p, radius);
             check_range(checks, name, map, p, 0);
             check_range(checks, name, map, p, std::numeric_limits<float>::infinity());
-            for (const size_t k : {0, 1, 8, 50, 1000}) {
+            for (const size_t k : std::initializer_list<size_t>{0, 1, 8, 50, 1000}) {
                 check_nearest(checks, name, map, p, k, std::numeric_limits<float>::infinity());
                 check_nearest(checks, name, map, p, k, radius);
             }
