@@ -75,16 +75,17 @@ float distance_squared(const Barrier &b) {
     return px * px + py * py;
 }
 
-/// Returns the share of each level's disc that the barriers of the largest one leave.
+/// Returns the share of each level's disc that the barriers of the largest one leave; 1 where no photon is.
 /// @param per_area as LevelGather's
-Float8 shares_of(const KernelRegion &largest, const Kernel &kernel, Float8 per_area) {
+/// @param weight of each level's photons
+Float8 shares_of(const KernelRegion &largest, const Kernel &kernel, Float8 per_area, Float8 weight) {
     const std::span<const Barrier> barriers = largest.barriers();
     Float8 shares = broadcast(1);
     float nearest = 1;
     for (const Barrier &barrier : barriers) nearest = std::min(nearest, distance_squared(barrier));
     std::array<Barrier, KernelRegion::max_barriers> scaled;
     for (size_t level = 0; level < level_count; ++level) {
-        if (nearest * per_area[level] >= 1) continue;
+        if (weight[level] == 0 || nearest * per_area[level] >= 1) continue;
         if (per_area[level] == 1) {
             shares[level] = largest.share();
             continue;
@@ -109,7 +110,6 @@ Levels estimate_levels(const PhotonMap &map, const EdgeIndex &edges, const Query
     const KernelRegion region = region_of(edges, query, largest);
     const Float8 radii = min(discs.radius, broadcast(largest.radius));
     const Float8 per_area = largest.radius * largest.radius / (radii * radii);
-    const Float8 shares = shares_of(region, largest, per_area) * discs.share;
 
     // Sums over the photons.
     Float8 weight;
@@ -121,6 +121,7 @@ Levels estimate_levels(const PhotonMap &map, const EdgeIndex &edges, const Query
     });
 
     // Per area.
+    const Float8 shares = shares_of(region, largest, per_area, weight) * discs.share;
     const Float8 density = per_area / (largest.norm() * shares);
     sum.red *= density;
     sum.green *= density;

@@ -64,9 +64,11 @@ SquaredError squared_error(const PilotNoise &noise, double global, double causti
     return squared;
 }
 
-/// Passes until the error is small enough.
-double passes_needed(const SquaredError &squared, double error, bool shrinks) {
+/// Passes until the error is small enough; infinitely many where they are surely more than a limit.
+double passes_needed(const SquaredError &squared, double error, bool shrinks, double limit) {
     constexpr double fewest = PilotNoise::passes, most = 1 << 16;
+    if (limit < fewest || (limit < most && squared.after(limit, shrinks) > error * error))
+        return std::numeric_limits<double>::infinity();
     double low = fewest, high = most;
     if (squared.after(low, shrinks) <= error * error) return low;
     // What is out of reach is the further out of it the more error is left.
@@ -103,7 +105,7 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
                 const double cost = noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost +
                                     noise.gather_cost * gathered;
                 const SquaredError squared = squared_error(noise, global, caustic, radius);
-                const double passes = passes_needed(squared, error, shrinks);
+                const double passes = passes_needed(squared, error, shrinks, best.cost / cost);
                 if (cost * passes >= best.cost) continue;
                 best = {.counts = {static_cast<uint64_t>(global), static_cast<uint64_t>(caustic)},
                         .global_radius = static_cast<float>(radius),
