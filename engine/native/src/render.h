@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "camera.h"
 #include "camera_pass.h"
@@ -124,11 +125,12 @@ class Render {
     struct Choice {
         Pilot pilot;
         Plan plan;
-        double pilot_cost;  ///< in rays
+        double pilot_cost;             ///< in rays
+        std::vector<Indirect> rivals;  ///< ways that are not hopeless beside it, the usual one first
     };
-    std::optional<Choice> choose_by_pilots(uint32_t first, const PhotonCounts &usual);
+    std::optional<Choice> choose_by_pilots(uint32_t first, std::span<const Indirect> ways, const PhotonCounts &usual);
     std::vector<Indirect> ways() const;
-    std::vector<Pilot> run_pilot_passes(uint32_t first);
+    std::vector<Pilot> run_pilot_passes(uint32_t first, std::span<const Indirect> ways);
     CameraPass camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,
                            uint32_t index) const;
     Radii radii_of_pass(uint32_t index) const;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a render decides before its first pass: the radii, and the photons of a pass.
+#include <algorithm>
+#include <cmath>
+
 #include "crossing_edges.h"
 #include "memory_limit.h"
 #include "parallel.h"
@@ -115,9 +118,9 @@ std::vector<Indirect> Render::ways() const {
 /// Pilot passes are the last that a picture could have, with fewer photons; no picture sums them, for a plan from what
 /// is summed would not be blind to it.
 /// @param first number of passes that other pilots had
-std::vector<Pilot> Render::run_pilot_passes(uint32_t first) {
+std::vector<Pilot> Render::run_pilot_passes(uint32_t first, std::span<const Indirect> ways) {
     std::vector<Pilot> pilots;
-    for (const Indirect way : ways()) pilots.emplace_back(way, PilotPixels(camera_, is_nested()));
+    for (const Indirect way : ways) pilots.emplace_back(way, PilotPixels(camera_, is_nested()));
     uint64_t rays = 0, stored = 0, caustic_rays = 0, caustic_stored = 0;
     for (uint32_t i = 0; i < PilotPixels::passes; ++i) {
         const uint32_t index = std::numeric_limits<uint32_t>::max() - first - i;
@@ -172,7 +175,7 @@ void Render::make_plan() {
     // See what a few passes of few photons bring to some pixels.
     const PhotonCounts usual = counts_;
     counts_ = {std::min(usual.global, few_pilot_photons), std::min(usual.caustic, few_pilot_photons)};
-    std::optional<Choice> choice = choose_by_pilots(0, usual);
+    std::optional<Choice> choice = choose_by_pilots(0, ways(), usual);
     if (!choice) {  // noise beyond all numbers tells nothing
         counts_ = usual;
         return;
@@ -187,7 +190,7 @@ void Render::make_plan() {
             return is_limited_ ? std::min(wanted, with_room) : wanted;
         };
         counts_ = {more(counts_.global, usual.global), more(counts_.caustic, usual.caustic)};
-        if (auto second = choose_by_pilots(PilotPixels::passes, usual)) choice = std::move(second);
+        if (auto second = choose_by_pilots(PilotPixels::passes, choice->rivals, usual)) choice = std::move(second);
     }
 
     const Plan &plan = choice->plan;
@@ -204,11 +207,12 @@ void Render::make_plan() {
 
 /// Runs pilot passes, and chooses what comes to the error in the least time; without one to stop at, to that which most
 /// pictures are made for.
-/// @param first as of run_pilot_passes()
+/// @param first, ways as of run_pilot_passes()
 /// @param usual photons without a plan
 /// @return nothing if no way has a cost
-std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const PhotonCounts &usual) {
-    std::vector<Pilot> pilots = run_pilot_passes(first);
+std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, std::span<const Indirect> ways,
+                                                       const PhotonCounts &usual) {
+    std::vector<Pilot> pilots = run_pilot_passes(first, ways);
 
     // The kernels were chosen to hold so many of the usual number of photons, which in the end take time too.
     constexpr double photon_cost = 0.005;
@@ -222,12 +226,15 @@ std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, const Pho
     const PilotNoise &first_way = pilots.front().noise;
     const double pilot_cost = PilotPixels::passes * (first_way.global.cost * first_way.global.count +
                                                      first_way.caustic.cost * first_way.caustic.count);
-    std::optional<Choice> best;
-    for (const Pilot &pilot : pilots) {
-        const Plan plan = plan_for(pilot.noise, error, settings_.use_progressive);
-        if (plan.cost < (best ? best->plan.cost : Plan{}.cost)) best = {pilot, plan, pilot_cost};
-    }
-    return best;
+    std::vector<Plan> plans;
+    for (const Pilot &pilot : pilots) plans.push_back(plan_for(pilot.noise, error, settings_.use_progressive));
+    const auto best = std::ranges::min_element(plans, {}, &Plan::cost);
+    if (!std::isfinite(best->cost)) return {};
+    Choice choice{pilots[static_cast<size_t>(best - plans.begin())], *best, pilot_cost, {pilots.front().indirect}};
+    constexpr double hopeless = 8;
+    for (size_t way = 1; way < plans.size(); ++way)
+        if (plans[way].cost < hopeless * best->cost) choice.rivals.push_back(pilots[way].indirect);
+    return choice;
 }
 
 }  // namespace photon_maps
