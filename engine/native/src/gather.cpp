@@ -45,8 +45,14 @@ LevelDiscs discs_at(const PhotonGather &gather, const SurfacePoint &hit) {
     LevelDiscs discs{gather.kernel.radius * sqrt(level_areas()), broadcast(1)};
     const Coverage::Disc largest = gather.coverage->disc(hit, gather.kernel.radius);
     if (largest.share == 1 && largest.radius == gather.kernel.radius) return discs;
+
+    // What no photon lies in need not be measured.
+    std::vector<Neighbor> nearest;
+    gather.map->nearest(hit.position, 1, gather.kernel.radius, nearest);
     for (size_t level = 0; level < level_count; ++level) {
-        const Coverage::Disc disc = gather.coverage->disc(hit, discs.radius[level]);
+        const float radius = discs.radius[level];
+        if (nearest.empty() || nearest.front().distance_squared > radius * radius) continue;
+        const Coverage::Disc disc = gather.coverage->disc(hit, radius);
         discs.radius[level] = disc.radius;
         discs.share[level] = disc.share;
     }
