@@ -69,7 +69,7 @@ help:
 	@echo 'make test-first-render   install and F12 in the oldest Blender, the newest, and 5.0'
 	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
 	@echo 'make soak      what takes long to break: random calls under sanitizers, many renders, [SOAK_SECONDS=600] each'
-	@echo 'make mutate    break the program in some ninety places, one at a time, and see that a test notices'
+	@echo 'make mutate    break the program in some hundred places, one at a time, and see that a test notices'
 	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'

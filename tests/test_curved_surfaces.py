@@ -10,8 +10,9 @@ import pytest
 from photon_maps_native import LightType, Mesh, SceneData, diffuse
 
 from engine.passes import Pass
-from engine.settings import Integrator
+from engine.settings import Estimate, Integrator
 from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, scene, sphere
+from tests.surfaces import glass, material
 
 
 def room_with(mesh: Mesh, center: tuple[float, float, float], half_angle: float) -> SceneData:
@@ -74,6 +75,20 @@ def test_a_fine_mesh_of_a_plane_is_as_bright_as_a_coarse_one() -> None:
         pictures.append(Picture(data, box_filtered(radius=0.08)).run(4).pixels(Pass.INDIRECT))
     coarse, fine = pictures
     assert fine == pytest.approx(coarse, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["smooth", "bumpy"])
+def test_caustics_by_nested_radii_are_as_bright_as_by_a_small_one(name: str) -> None:
+    """On a ball under a slab of glass in the sun, which the widest kernels would wrap around."""
+    view = camera((0, -0.9, 0.5), (0, 0, 0.05), (48, 48), 0.2)
+    slab = box((-3, -3, 0.8), (3, 3, 1.0))
+    sun = lamp(LightType.SUN, (0, 0, 1), (0, 0, 0), 10.0)
+    data = scene([SHAPES[name], slab], view, [diffuse((0.7, 0.7, 0.7)), material(glass(1.5))], [sun])
+    found = {}
+    for estimate, radius in ((Estimate.ADAPTIVE, 0.12), (Estimate.RADIUS, 0.02)):
+        settings = box_filtered(photon_count=1 << 18, radius=radius, estimate=estimate, use_indirect=False)
+        found[estimate] = Picture(data, settings).run(8).pixels(Pass.CAUSTIC).mean()
+    assert found[Estimate.ADAPTIVE] == pytest.approx(found[Estimate.RADIUS], rel=BOUNDS[name][0])
 
 
 def test_a_curved_surface_is_the_same_bits_for_any_number_of_threads() -> None:

@@ -15,22 +15,42 @@ namespace {
 
 constexpr uint32_t watched_pixels = 1024;
 
-/// Expected square of a difference that kernels make, of which not even the order is known before it is measured.
-/// @param deviation of the measurement, whose error is normally distributed
-double expected_square(double measured, double deviation) {
-    // A thousandth of the radiance does not show; two thirds are more than kernels of the engine's choice do.
-    constexpr int least = -20, most = -1;
-    double sum = 0, weights = 0;
-    for (int power = least; deviation > 0 && power <= most; ++power) {
-        const double square = std::exp2(power), off = (measured - square) / deviation;
-        const double weight = std::exp(-off * off / 2);
-        sum += weight * square;
+}  // namespace
+
+double expected_square(const PassProducts &products) {
+    constexpr uint32_t n = PilotNoise::passes;
+    constexpr double pairs = n * (n - 1) / 2;
+
+    // The mean of all pairs, and how far it is to be trusted. Let q be the variance of a product by the noise of either
+    // pass, and r that by the noise of both: then pairs have the variance 1.2 q + r, the means of each pass's three
+    // pairs (4 q + 2 r) / 9, and the mean of all 0.8 q + r / 6 is what remains of 4 q / 4 + r / 6.
+    double sum = 0, squares = 0, squares_of_passes = 0;
+    for (uint32_t a = 0; a < n; ++a) {
+        double of_pass = 0;
+        for (uint32_t b = 0; b < n; ++b)
+            if (b != a) of_pass += products[a][b];
+        sum += of_pass / 2;
+        squares_of_passes += of_pass * of_pass / ((n - 1) * (n - 1));
+        for (uint32_t b = a + 1; b < n; ++b) squares += products[a][b] * products[a][b];
+    }
+    const double mean = sum / pairs;
+    const double of_pairs = (squares - pairs * mean * mean) / (pairs - 1);
+    const double of_passes = (squares_of_passes - n * mean * mean) / (n - 1);
+    const double either = std::max(0.0, (9 * of_passes - 2 * of_pairs) / 1.6);
+    const double variance = std::max(0.0, of_pairs - 1.2 * either) / pairs + either;
+
+    // Not even its order is known before: all powers of two are as likely. A thousandth of the radiance does not show;
+    // two thirds are more than kernels of the engine's choice do.
+    constexpr int least = -20, most = -1, steps = 8;
+    double expected = 0, weights = 0;
+    for (int step = least * steps; step <= most * steps && variance > 0; ++step) {
+        const double square = std::exp2(static_cast<double>(step) / steps), off = mean - square;
+        const double weight = std::exp(-off * off / (2 * variance));
+        expected += weight * square;
         weights += weight;
     }
-    return weights > 0 ? sum / weights : std::max(measured, 0.0);  // of what is measured well
+    return weights > 0 ? expected / weights : std::max(mean, 0.0);  // of what is measured well
 }
-
-}  // namespace
 
 PilotPixels::PilotPixels(const Camera &camera, bool is_nested) : is_nested_(is_nested) {
     const uint64_t all = uint64_t{camera.frame_width} * camera.frame_height;
@@ -113,20 +133,15 @@ double PilotPixels::squared_blur(Passes Pixel::*part, std::span<const Vec3> mean
     std::ranges::sort(pixels);
     pixels.resize(pixels.size() - pixels.size() / 100);
 
-    // Noise of different passes is independent, so the product of two tells what they have in common. Pixels share
-    // photons: only from pair to pair does noise show how much of the mean it may be.
-    constexpr double pairs = passes * (passes - 1) / 2;
-    double sum = 0, squares = 0;
+    // Pixels share photons, so that their number does not tell how far a mean over them is to be trusted.
+    PassProducts products{};
     for (uint32_t a = 0; a < passes; ++a)
         for (uint32_t b = a + 1; b < passes; ++b) {
-            double of_pair = 0;
-            for (const auto &[size, i] : pixels) of_pair += double{product(i, a, b)};
-            of_pair /= static_cast<double>(pixels.size());
-            sum += of_pair;
-            squares += of_pair * of_pair;
+            double sum = 0;
+            for (const auto &[size, i] : pixels) sum += double{product(i, a, b)};
+            products[a][b] = products[b][a] = sum / static_cast<double>(pixels.size());
         }
-    const double mean = sum / pairs, variance = std::max(0.0, squares / pairs - mean * mean) / (pairs - 1);
-    return of_difference * expected_square(mean, std::sqrt(variance));
+    return of_difference * expected_square(products);
 }
 
 double PilotPixels::pixel_cost() const {

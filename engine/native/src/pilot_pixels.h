@@ -13,6 +13,15 @@
 
 namespace photon_maps {
 
+/// For each two passes the mean over pixels of the product of what they differ by; only those of different passes
+/// count.
+using PassProducts = std::array<std::array<double, PilotNoise::passes>, PilotNoise::passes>;
+
+/// Returns the expected square of what passes have in common, of which not even the order is known before. Noise of
+/// different passes is independent, so the product of two tells what they share; how much the products differ tells how
+/// far their mean is to be trusted.
+double expected_square(const PassProducts &products);
+
 /// Light that photons bring evenly, and paths sometimes by a few samples of many.
 enum class RareLight { caustics, indirect };
 

@@ -16,7 +16,7 @@ double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(pass
 
 /// The variance of a pass's light where its random numbers are stratified over so many passes, over what the halves of
 /// the pilot passes tell. With n samples at the edges of shadows and things the variance of their mean goes as n^-1.5,
-/// elsewhere faster (Mitchell 1996); from 4 to 64 passes of ten scenes as n^-0.9 to n^-1.7. What more bounces bring
+/// elsewhere faster (Mitchell 1996); from 4 to 64 passes of twelve scenes as n^-1.2 to n^-1.5. What more bounces bring
 /// goes as n^-1.1, and is taken as n^-1. A quarter of the halves' squared difference is V(2) - V(4) (as of
 /// ErrorEstimate::compare_halves).
 double stratified(double passes) {
@@ -64,13 +64,22 @@ SquaredError squared_error(const PilotNoise &noise, double global, double causti
     return squared;
 }
 
+/// Of a pass, in rays.
+/// @param global, caustic, radius as of squared_error()
+double pass_cost(const PilotNoise &noise, double global, double caustic, double radius) {
+    const double gathered = global > 0 ? global / noise.global.count * radius * radius : 0;
+    return noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost + noise.gather_cost * gathered;
+}
+
 /// Passes until the error is small enough; infinitely many where they are surely more than a limit.
 double passes_needed(const SquaredError &squared, double error, bool shrinks, double limit) {
     constexpr double fewest = PilotNoise::passes, most = 1 << 16;
     if (limit < fewest || (limit < most && squared.after(limit, shrinks) > error * error))
         return std::numeric_limits<double>::infinity();
     double low = fewest, high = most;
-    if (squared.after(low, shrinks) <= error * error) return low;
+    const double first = squared.after(low, shrinks);
+    if (!std::isfinite(first)) return std::numeric_limits<double>::infinity();
+    if (first <= error * error) return low;
     // What is out of reach is the further out of it the more error is left.
     const double left = squared.after(most, shrinks);
     if (left > error * error) return most * left / (error * error);
@@ -101,9 +110,7 @@ Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
     for (const double global : counts_of(noise.global))
         for (const double caustic : counts_of(noise.caustic))
             for (const double radius : radii) {
-                const double gathered = global > 0 ? global / noise.global.count * radius * radius : 0;
-                const double cost = noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost +
-                                    noise.gather_cost * gathered;
+                const double cost = pass_cost(noise, global, caustic, radius);
                 const SquaredError squared = squared_error(noise, global, caustic, radius);
                 const double passes = passes_needed(squared, error, shrinks, best.cost / cost);
                 if (cost * passes >= best.cost) continue;
@@ -123,10 +130,10 @@ uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan, bool shrin
     const SquaredError squared = squared_error(noise, global, caustic, double{plan.global_radius});
     const double direct = noise.direct_variance * stratified(plan.passes);
     const double other = squared.noise(plan.passes, shrinks) - direct;
-    const double cost = noise.pixel_cost + global * noise.global.cost + caustic * noise.caustic.cost;
-    // With k samples: (other + direct / k) * (cost + k * light_cost).
+    // With k samples: (other + direct / k) * (rest + k * light_cost).
+    const double rest = pass_cost(noise, global, caustic, double{plan.global_radius}) - noise.light_cost;
     if (noise.light_cost == 0 || direct == 0) return 1;
-    const double best = std::sqrt(direct * cost / (std::max(other, 1e-12) * noise.light_cost));
+    const double best = std::sqrt(direct * std::max(rest, 0.0) / (std::max(other, 1e-12) * noise.light_cost));
     return static_cast<uint32_t>(std::clamp(std::round(best), 1.0, most));
 }
 

@@ -18,7 +18,7 @@ struct PhotonCounts {
 /// What one sort of photons does to the pictures of passes that emit `count`.
 struct MapNoise {
     double variance = 0;       ///< relative to squared radiance as ErrorEstimate has it
-    double flux_variance = 0;  ///< the part of it that kernels of all widths have: of how many photons come at all
+    double flux_variance = 0;  ///< the part of it that kernels of all widths have, as of how many photons come at all
     double blur = 0;           ///< relative square of the error by the kernel's width
     double count = 0;          ///< emitted in a pass
     double cost = 0;           ///< of tracing and storing one of them, in rays

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double caustic_photons_in_kernel = 20;
 constexpr float least_caustic_pixels = 5;
-/// Of the width of what the camera sees: wider kernels would blur all that there is to see of indirect light.
+/// Of the width of what the camera sees: kernels much wider would blur all that there is to see of indirect light.
 constexpr float largest_share_of_view = 0.125f;
 constexpr uint64_t max_pilot_photons = 1 << 14;
 constexpr uint64_t pilot_pixels = 512;

@@ -69,7 +69,6 @@ void Render::choose_radii() {
     else if (is_chosen)
         radii.caustic = choose_caustic_radius(scene_, emission_, camera_, tracing(PhotonPurpose::caustic, 0), &cancel_);
     if (is_chosen && is_nested()) radii.caustic *= largest_nested;
-    if (is_planned()) radii.indirect *= pilot_radius;
 
     // What bounds kernels. Of crossings in finer meshes there would be more than a kernel can bear, and more rays to
     // find them than they are worth.
@@ -79,6 +78,7 @@ void Render::choose_radii() {
         kernel_bounds_ = find_crossing_edges(scene_, shortest_crossing * largest, settings_.threads, &cancel_);
         kernel_bounds_.insert(kernel_bounds_.end(), scene_.feature_edges().begin(), scene_.feature_edges().end());
     }
+    if (is_planned()) radii.indirect *= pilot_radius;
     set_radii(radii);
 }
 
@@ -163,6 +163,8 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first, std::span<const Indi
             noise.global.count = static_cast<double>(counts_.global);
             noise.global.cost = cost(rays, stored, counts_.global);
         }
+        // What a final gather's own rays bring to noise falls with no radius either, but nor does it with photons.
+        if (pilot.indirect == Indirect::gather) noise.global.flux_variance = 0;
     }
     return pilots;
 }
@@ -231,9 +233,11 @@ std::optional<Render::Choice> Render::choose_by_pilots(uint32_t first, std::span
     const auto best = std::ranges::min_element(plans, {}, &Plan::cost);
     if (!std::isfinite(best->cost)) return {};
     Choice choice{pilots[static_cast<size_t>(best - plans.begin())], *best, pilot_cost, {pilots.front().indirect}};
+    // Far off, pilots err by less than this. Of what one way lacks none but the others can tell.
     constexpr double hopeless = 8;
+    const bool lacks = std::ranges::any_of(pilots, [](const Pilot &pilot) { return pilot.noise.lack > 0; });
     for (size_t way = 1; way < plans.size(); ++way)
-        if (plans[way].cost < hopeless * best->cost) choice.rivals.push_back(pilots[way].indirect);
+        if (lacks || plans[way].cost < hopeless * best->cost) choice.rivals.push_back(pilots[way].indirect);
     return choice;
 }
 

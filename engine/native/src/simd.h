@@ -87,7 +87,7 @@ template <typename Work>
     return work();
 }
 
-/// Without AVX-512BW, for GCC would keep numbers in its 64-bit masks: a fifth slower.
+/// Without AVX-512BW, for GCC would keep numbers in its 64-bit masks, which is slower.
 template <typename Work>
 [[gnu::flatten, gnu::target("avx2,avx512f,avx512vl")]] auto with_avx512(const Work &work) {
     return work();

@@ -86,6 +86,11 @@ void check_bounds(Checks &checks) {
     hopeless.camera_variance = 1e12;
     const Plan still = plan_for(hopeless, 1e-4, true);
     checks.that(still.counts.global > 0 && std::isfinite(still.cost), "out of reach, still a plan");
+    for (const double beyond : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+        PilotNoise wild = room();
+        wild.global.variance = wild.global.flux_variance = beyond;
+        checks.that(!std::isfinite(plan_for(wild, 0.02, true).cost), "noise beyond all numbers is no plan");
+    }
     PilotNoise lacking = room();
     lacking.lack = 0.03 * 0.03;
     checks.that(plan_for(lacking, 0.02, true).cost > 100 * plan_for(room(), 0.02, true).cost, "light that never comes");
