@@ -40,8 +40,8 @@ double expected_square(const PassProducts &products) {
     const double variance = std::max(0.0, of_pairs - 1.2 * either) / pairs + either;
 
     // Not even its order is known before: all powers of two are as likely. A thousandth of the radiance does not show;
-    // two thirds are more than kernels of the engine's choice do.
-    constexpr int least = -20, most = -1, steps = 8;
+    // an eighth is more than kernels of the engine's choice err by.
+    constexpr int least = -20, most = -6, steps = 8;
     double expected = 0, weights = 0;
     for (int step = least * steps; step <= most * steps && variance > 0; ++step) {
         const double square = std::exp2(static_cast<double>(step) / steps), off = mean - square;

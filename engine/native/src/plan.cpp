@@ -93,13 +93,18 @@ double passes_needed(const SquaredError &squared, double error, bool shrinks, do
 
 /// Chooses photons and radius.
 Plan plan_photons(const PilotNoise &noise, double error, bool shrinks) {
-    const auto counts_of = [](const MapNoise &map) {
-        // Fewer would cost no less: a pass of a small picture has other things to do. 2^10 ... 2^23.
+    const auto counts_of = [&](const MapNoise &map) {
+        // Fewer would cost no less: a pass of a small picture has other things to do. More would hardly gain anything
+        // but longer passes: of photons alone twice as many do in one pass what as many do in two. 2^10 ... 2^23.
         constexpr int fewest = 10, most = 23, steps = 2;
+        constexpr double most_work = 8;  // over that of the cameras' paths
         std::vector<double> counts;
         if (map.count == 0) return std::vector<double>{0};
-        for (int i = fewest * steps; i <= most * steps; ++i)
-            counts.push_back(std::exp2(static_cast<double>(i) / steps));
+        for (int i = fewest * steps; i <= most * steps; ++i) {
+            const double count = std::exp2(static_cast<double>(i) / steps);
+            if (!counts.empty() && count * map.cost > most_work * noise.pixel_cost) break;
+            counts.push_back(count);
+        }
         return counts;
     };
     const std::vector<double> radii =

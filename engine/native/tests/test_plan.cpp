@@ -86,6 +86,10 @@ void check_bounds(Checks &checks) {
     hopeless.camera_variance = 1e12;
     const Plan still = plan_for(hopeless, 1e-4, true);
     checks.that(still.counts.global > 0 && std::isfinite(still.cost), "out of reach, still a plan");
+    PilotNoise dim = room();
+    dim.global.variance = dim.global.flux_variance = 1e6;
+    const double work = static_cast<double>(plan_for(dim, 0.02, true).counts.global) * dim.global.cost;
+    checks.that(work > 4 * dim.pixel_cost && work <= 8 * dim.pixel_cost, "hopelessly dim, passes stay short");
     for (const double beyond : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
         PilotNoise wild = room();
         wild.global.variance = wild.global.flux_variance = beyond;
