@@ -21,9 +21,9 @@ double expected_square(const PassProducts &products) {
     constexpr uint32_t n = PilotNoise::passes;
     constexpr double pairs = n * (n - 1) / 2;
 
-    // The mean of all pairs, and how far it is to be trusted. Let q be the variance of a product by the noise of either
-    // pass, and r that by the noise of both: then pairs have the variance 1.2 q + r, the means of each pass's three
-    // pairs (4 q + 2 r) / 9, and the mean of all 0.8 q + r / 6 is what remains of 4 q / 4 + r / 6.
+    // The mean of all pairs, and how far it is to be trusted. Let q be its variance by the noise of one pass times what
+    // is common, and r the variance of a product by the noise of both passes. Then pairs have the variance 1.2 q + r,
+    // the means of each pass's three pairs (4 q + 2 r) / 9, and the mean of all q + r / 6.
     double sum = 0, squares = 0, squares_of_passes = 0;
     for (uint32_t a = 0; a < n; ++a) {
         double of_pass = 0;
@@ -39,7 +39,7 @@ double expected_square(const PassProducts &products) {
     const double either = std::max(0.0, (9 * of_passes - 2 * of_pairs) / 1.6);
     const double variance = std::max(0.0, of_pairs - 1.2 * either) / pairs + either;
 
-    // Not even its order is known before: all powers of two are as likely. A thousandth of the radiance does not show;
+    // Not even its order is known before: all are as likely. A thousandth of the radiance does not show;
     // an eighth is more than kernels of the engine's choice err by.
     constexpr int least = -20, most = -6, steps = 8;
     double expected = 0, weights = 0;
