@@ -9,7 +9,7 @@ PACKAGES := $(PLATFORMS:%=dist/photon_maps-$(VERSION)-%.zip)
 PYTHON := .venv/bin/python
 ZIG := $(CURDIR)/.venv/lib/python3.11/site-packages/ziglang/zig
 PIP := $(PYTHON) -m pip --quiet --disable-pip-version-check
-JOBS := $(shell nproc)
+JOBS := $(shell getconf _NPROCESSORS_ONLN)
 # The Embree that the wheel brings; a pattern, for the name carries a checksum.
 EMBREE := $(CURDIR)/build/native/embreex.libs/libembree4-*.so.4
 
@@ -57,7 +57,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 .NOTPARALLEL:
 .PHONY: help demo beside seed chart limits prediction calibration scale sweep package package-twice \
     $(PLATFORMS:%=package-twice-%) test built-checks test-native test-python test-gui test-versions test-first-render \
-    test-wine test-campaign soak mutate lint format bench docs clean
+    test-wine test-here test-campaign soak mutate lint format bench docs clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -254,6 +254,13 @@ built-checks: build/native/stamp
 	cmake -S engine/native -B build/cmake/sanitize -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) \
 	    -DPHOTON_MAPS_SANITIZE=ON -DCMAKE_CXX_FLAGS_RELEASE=-O1
 	@for kind in release sanitize; do cmake --build build/cmake/$$kind || exit 1; done
+
+# The same checks by the compiler of any system, for its release: HERE names the Python there, which has embreex.
+test-here:
+	cmake -S engine/native -B build/cmake/here -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE="$$(PYTHONPATH=engine/native \
+	    $(HERE) -c 'from photon_maps_native.library import embree_path; print(embree_path().as_posix())')"
+	cmake --build build/cmake/here
+	@$(call CTEST,here)
 
 test-native: built-checks
 	@$(call CTEST,release)

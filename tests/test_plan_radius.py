@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign."""
+"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign; and that
+rounding does not change its mind."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from photon_maps_native import SceneData, diffuse
 
 from benchmarks.chart.scenes import SCENES
 from engine.settings import AUTOMATIC
 from tests.shapes import Picture, box, box_filtered, camera, scene
+from tests.test_scene_invariances import scaled
 
 SEEDS = range(6)
 
@@ -32,3 +35,14 @@ def test_what_kernels_do_not_blur_gets_wide_ones() -> None:
 
 def test_behind_a_gap_kernels_are_narrow() -> None:
     assert chosen_over_usual(SCENES["gap"].data()) < 0.9
+
+
+def test_the_unit_of_length_does_not_change_the_plan() -> None:
+    # In this scene pilots look twice: the second time with as many photons as the first look says.
+    plans = []
+    for scale in (0.001, 1.0, 1000.0):
+        data = scaled(SCENES["hall8"].data(), scale)
+        chosen = Picture(data, box_filtered(**AUTOMATIC)).run(1).render.statistics()
+        plans.append((chosen.photon_count, chosen.light_samples, chosen.radius_first / scale))
+    assert plans[0] == pytest.approx(plans[1], rel=1e-4)
+    assert plans[2] == pytest.approx(plans[1], rel=1e-4)

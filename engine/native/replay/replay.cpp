@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Repeats recorded calls of the C interface, so that the library of any platform renders without Python or Blender.
-//   replay LIBRARY EMBREE RECORDING PICTURES [remove FILE]
+//   replay LIBRARY EMBREE RECORDING PICTURES [remove FOLDER]
 // The first two are full paths. What the calls read of pictures goes to PICTURES, as float32 one after the other. With
-// `remove` FILE is removed after LIBRARY was let go, as when the extension is removed.
+// `remove` FOLDER is removed after LIBRARY was let go, as when the extension is removed.
 // tests/platforms/recording.py writes recordings and says how they are laid out; it is for little-endian machines.
 #include <array>
 #include <cstdint>
@@ -77,7 +77,7 @@ using LastError = const char *();
 uint64_t address(const void *pointer) { return reinterpret_cast<uintptr_t>(pointer); }
 
 void replay(const std::string &library_path, const std::string &embree, Reader reader, std::ofstream pictures) {
-    const photon_maps::DynamicLibrary library(library_path, photon_maps::Stay::while_used);
+    const photon_maps::DynamicLibrary library(library_path);
     LastError *last_error = nullptr;
     library.resolve("pm_last_error", last_error);
     std::array<uint64_t, 8> handles{};
@@ -123,12 +123,12 @@ int main(int count, char **values) {
     const std::vector<std::string> arguments(values, values + count);
     const bool remove = arguments.size() == 7 && arguments[5] == "remove";
     if (arguments.size() != 5 && !remove) {
-        std::cerr << "usage: replay LIBRARY EMBREE RECORDING PICTURES [remove FILE]\n";
+        std::cerr << "usage: replay LIBRARY EMBREE RECORDING PICTURES [remove FOLDER]\n";
         return 2;
     }
     try {
         replay(arguments[1], arguments[2], Reader(arguments[3]), std::ofstream(arguments[4], std::ios::binary));
-        if (remove) std::filesystem::remove(arguments[6]);  // throws where it is in use
+        if (remove) std::filesystem::remove_all(arguments[6]);  // throws where a file of it is in use
     } catch (const std::exception &error) {
         std::cerr << "replay: " << error.what() << "\n";
         return 1;

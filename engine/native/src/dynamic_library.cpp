@@ -25,12 +25,9 @@ std::wstring wide(const std::string &utf8) {
 }  // namespace
 
 // The libraries beside it come before those of the process's own folder.
-DynamicLibrary::DynamicLibrary(const std::string &path, Stay stay)
+DynamicLibrary::DynamicLibrary(const std::string &path)
     : handle_(LoadLibraryExW(wide(path).c_str(), nullptr, LOAD_WITH_ALTERED_SEARCH_PATH)) {
     if (!handle_) throw LibraryError(std::system_category().message(static_cast<int>(GetLastError())));
-    if (stay == Stay::while_used) return;
-    HMODULE pinned = nullptr;
-    GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_PIN, wide(path).c_str(), &pinned);
 }
 
 void DynamicLibrary::Closer::operator()(void *handle) const { FreeLibrary(static_cast<HMODULE>(handle)); }
@@ -54,8 +51,8 @@ constexpr int load_flags = RTLD_NOW | RTLD_LOCAL;
 
 }  // namespace
 
-DynamicLibrary::DynamicLibrary(const std::string &path, Stay stay)
-    : handle_(dlopen(path.c_str(), stay == Stay::to_the_end ? load_flags | RTLD_NODELETE : load_flags)) {
+DynamicLibrary::DynamicLibrary(const std::string &path)
+    : handle_(dlopen(path.c_str(), load_flags)) {
     if (handle_) return;
     const char *reason = dlerror();
     throw LibraryError(reason ? reason : path);

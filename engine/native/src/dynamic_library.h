@@ -13,15 +13,12 @@ struct LibraryError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// How long a library stays loaded: to the end of the process where the library's own threads may sleep in its code.
-enum class Stay { to_the_end, while_used };
-
-/// A loaded library.
+/// A library, loaded while this lives.
 class DynamicLibrary {
   public:
     /// @param path in UTF-8
     /// @throws LibraryError with the system's own reason
-    DynamicLibrary(const std::string &path, Stay stay);
+    explicit DynamicLibrary(const std::string &path);
 
     /// Sets a pointer to the function of that name.
     /// @throws LibraryError if there is none

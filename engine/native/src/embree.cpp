@@ -22,7 +22,7 @@ rtc::Functions resolve_functions(const DynamicLibrary &library) {
     library.resolve("rtcSetSceneFlags", f.rtcSetSceneFlags);
     library.resolve("rtcSetSceneBuildQuality", f.rtcSetSceneBuildQuality);
     library.resolve("rtcSetSceneProgressMonitorFunction", f.rtcSetSceneProgressMonitorFunction);
-    library.resolve("rtcCommitScene", f.rtcCommitScene);
+    library.resolve("rtcJoinCommitScene", f.rtcJoinCommitScene);
     library.resolve("rtcNewGeometry", f.rtcNewGeometry);
     library.resolve("rtcReleaseGeometry", f.rtcReleaseGeometry);
     library.resolve("rtcCommitGeometry", f.rtcCommitGeometry);
@@ -51,12 +51,15 @@ constexpr int error_out_of_memory = 4, error_cancelled = 6;
 Embree::Embree(const std::string &path) {
     check_processor();
     try {
-        library_.emplace(path, Stay::to_the_end);
+        library_.emplace(path);
         functions_ = resolve_functions(*library_);
     } catch (const LibraryError &error) {
         throw EmbreeError(std::string("Embree cannot be loaded: ") + error.what());
     }
-    device_ = functions_.rtcNewDevice(nullptr);
+    // All threads are the caller's, by rtcJoinCommitScene: threads of Embree's own would sleep in its code for good, so
+    // that it could not be unloaded, and Windows could not replace its file.
+    const std::string threads = std::to_string(thread_count(0));
+    device_ = functions_.rtcNewDevice(("threads=" + threads + ",user_threads=" + threads).c_str());
     if (!device_) throw EmbreeError("Embree cannot be started on this processor");
     version_ = static_cast<uint32_t>(functions_.rtcGetDeviceProperty(device_, property_version));
     // The ray and hit structures above are those of 4.3 and later; another major version may differ in anything.

@@ -62,7 +62,7 @@ struct Functions {
     void (*rtcSetSceneFlags)(Scene, SceneFlags);
     void (*rtcSetSceneBuildQuality)(Scene, BuildQuality);
     void (*rtcSetSceneProgressMonitorFunction)(Scene, bool (*monitor)(void *, double), void *);
-    void (*rtcCommitScene)(Scene);
+    void (*rtcJoinCommitScene)(Scene);
     Geometry (*rtcNewGeometry)(Device, GeometryType);
     void (*rtcReleaseGeometry)(Geometry);
     void (*rtcCommitGeometry)(Geometry);

@@ -185,7 +185,9 @@ void Render::make_plan() {
 
     // Where there will be much to do, look again with more photons: noise hides how kernels blur. Where paths seem
     // better, only if that is next to nothing beside what they have to do.
-    const double times = choice->pilot_cost > 0 ? share_of_pilots * choice->plan.cost / choice->pilot_cost : 0;
+    // In steps: next to the same scene, as in another unit of length, has the same photons again.
+    const double wanted_times = choice->pilot_cost > 0 ? share_of_pilots * choice->plan.cost / choice->pilot_cost : 0;
+    const double times = std::exp2(std::round(2 * std::log2(wanted_times)) / 2);
     if (times >= (choice->pilot.indirect < Indirect::paths ? worthwhile : most)) {
         const auto more = [&](uint64_t count, uint64_t with_room) {
             const auto wanted = static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));

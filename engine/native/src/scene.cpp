@@ -71,7 +71,8 @@ void Scene::build(int threads, const std::atomic<bool> *cancel) {
     const std::lock_guard lock(build_mutex_);
     if (built_) return;
     find_world_edges(threads, cancel);
-    build_embree(cancel);
+    make_embree_scenes(cancel);
+    build_embree_scenes(threads, cancel);
     built_ = true;
 }
 
@@ -169,7 +170,7 @@ void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id, ui
     f.rtcReleaseGeometry(geometry);
 }
 
-void Scene::build_embree(const std::atomic<bool> *cancel) {
+void Scene::make_embree_scenes(const std::atomic<bool> *cancel) {
     top_scene_.reset();
     mesh_scenes_.clear();
     const rtc::Functions &f = embree_->functions();
@@ -178,8 +179,6 @@ void Scene::build_embree(const std::atomic<bool> *cancel) {
         mesh_scenes_.push_back(mesh.use_count > 1 ? new_scene(cancel) : SceneHandle(nullptr, {embree_.get()}));
         if (mesh.use_count <= 1) continue;
         attach_triangles(mesh_scenes_.back().get(), mesh, 0, ~0u);
-        f.rtcCommitScene(mesh_scenes_.back().get());
-        embree_->check("building the acceleration structure of a mesh");
     }
     top_scene_ = new_scene(cancel);
     has_transparent_ = false;
@@ -202,8 +201,20 @@ void Scene::build_embree(const std::atomic<bool> *cancel) {
         f.rtcAttachGeometryByID(top_scene_.get(), geometry, i);
         f.rtcReleaseGeometry(geometry);
     }
-    f.rtcCommitScene(top_scene_.get());
-    embree_->check("building the acceleration structure");
+    embree_->check("reading the scene");
+}
+
+void Scene::build_embree_scenes(int threads, const std::atomic<bool> *cancel) {
+    // Threads that join a scene leave it when it is built, so that all of them find the instanced ones before the top.
+    const auto join = [&](rtc::Scene scene) {
+        embree_->functions().rtcJoinCommitScene(scene);
+        embree_->check("building the acceleration structure");  // Embree keeps an error for the thread that had it
+    };
+    parallel_for(threads, static_cast<size_t>(threads), cancel, [&](size_t) {
+        for (const SceneHandle &scene : mesh_scenes_)
+            if (scene) join(scene.get());
+        join(top_scene_.get());
+    });
 }
 
 bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {

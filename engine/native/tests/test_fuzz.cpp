@@ -35,7 +35,7 @@ float garbage(std::mt19937 &random) {
 
 /// What became of garbage.
 struct Outcomes {
-    long refused = 0, rendered = 0;
+    uint32_t refused = 0, rendered = 0;
 };
 
 void test_garbage_is_refused_or_rendered(Checks &checks, pm_device *device, uint32_t seed, Outcomes &outcomes) {
