@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign; and that
-rounding does not change its mind."""
+"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign, and
+whatever the unit of length."""
 
 from __future__ import annotations
 

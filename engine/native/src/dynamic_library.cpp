@@ -51,8 +51,7 @@ constexpr int load_flags = RTLD_NOW | RTLD_LOCAL;
 
 }  // namespace
 
-DynamicLibrary::DynamicLibrary(const std::string &path)
-    : handle_(dlopen(path.c_str(), load_flags)) {
+DynamicLibrary::DynamicLibrary(const std::string &path) : handle_(dlopen(path.c_str(), load_flags)) {
     if (handle_) return;
     const char *reason = dlerror();
     throw LibraryError(reason ? reason : path);
