@@ -85,7 +85,7 @@ def load_library() -> ctypes.CDLL:
 def unload_library() -> None:
     """Free the helper, so that Windows lets its file be removed or replaced; the next call loads it again.
 
-    Does nothing while a handle is open. Embree is free as soon as none is.
+    Does nothing while a handle is open. Embree is freed with the last one.
     """
     if sys.platform != "win32" or not load_library.cache_info().currsize or any(handle.is_open for handle in HANDLES):
         return

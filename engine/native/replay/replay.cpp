@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -14,6 +15,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "dynamic_library.h"
@@ -127,7 +129,16 @@ int main(int count, char **values) {
         return 2;
     }
     try {
-        replay(arguments[1], arguments[2], Reader(arguments[3]), std::ofstream(arguments[4], std::ios::binary));
+        // In a thread that ends when the libraries have been let go, as a render's does in Blender.
+        std::exception_ptr failure;
+        std::thread([&] {
+            try {
+                replay(arguments[1], arguments[2], Reader(arguments[3]), std::ofstream(arguments[4], std::ios::binary));
+            } catch (...) {
+                failure = std::current_exception();
+            }
+        }).join();
+        if (failure) std::rethrow_exception(failure);
         if (remove) std::filesystem::remove_all(arguments[6]);  // throws where a file of it is in use
     } catch (const std::exception &error) {
         std::cerr << "replay: " << error.what() << "\n";

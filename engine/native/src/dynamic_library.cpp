@@ -42,11 +42,12 @@ namespace {
 
 // Blender's executable puts its own Embree and TBB into the global scope; without RTLD_DEEPBIND a library would bind to
 // them. The sanitizers' runtimes refuse that flag, and run in no process with a second Embree. macOS has no
-// such flag: there a library names those that it binds to.
+// such flag: there a library names those that it binds to. It stays loaded, for threads that were in it may end later,
+// and then call what it registered; files in use can be replaced here.
 #if defined(RTLD_DEEPBIND) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
+constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | RTLD_DEEPBIND;
 #else
-constexpr int load_flags = RTLD_NOW | RTLD_LOCAL;
+constexpr int load_flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;
 #endif
 
 }  // namespace

@@ -13,7 +13,7 @@ struct LibraryError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A library, loaded while this lives.
+/// A loaded library; on Windows freed with this.
 class DynamicLibrary {
   public:
     /// @param path in UTF-8

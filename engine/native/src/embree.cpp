@@ -57,7 +57,7 @@ Embree::Embree(const std::string &path) {
         throw EmbreeError(std::string("Embree cannot be loaded: ") + error.what());
     }
     // All threads are the caller's, by rtcJoinCommitScene: threads of Embree's own would sleep in its code for good, so
-    // that it could not be unloaded, and Windows could not replace its file.
+    // that Windows could neither free it nor replace its file.
     const std::string threads = std::to_string(thread_count(0));
     device_ = functions_.rtcNewDevice(("threads=" + threads + ",user_threads=" + threads).c_str());
     if (!device_) throw EmbreeError("Embree cannot be started on this processor");
