@@ -180,6 +180,5 @@ typedef struct pm_camera {
     float aperture_rotation;  /* radians */
     float aperture_ratio;     /* above 0: of width to height is 1 / ratio, as Blender's anamorphic bokeh */
     uint32_t aperture_blades; /* fewer than 3: round */
-    uint32_t
-        stride; /* >= 1: from one pixel of the region to the next, above 1 they are a sample of the frame's pixels */
+    uint32_t stride;          /* >= 1: the region is a sample of the frame, one pixel of each stride x stride */
 } pm_camera;

@@ -201,7 +201,7 @@ class Camera:
     aperture_rotation: float = 0.0  #: radians
     aperture_ratio: float = 1.0
     aperture_blades: int = 0  #: fewer than 3: round
-    stride: int = 1  #: from one pixel of the region to the next; above 1 they are a sample of the frame's pixels
+    stride: int = 1  #: above 1 the region is a sample of the frame, one pixel of each stride x stride
 
 
 @dataclass(frozen=True)

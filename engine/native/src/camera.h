@@ -2,6 +2,7 @@
 // From pixels to rays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -37,10 +38,17 @@ struct Camera {
     float left, right, bottom, top;  ///< window of the whole frame at z = -1, in scene units, or in radians
     uint32_t frame_width, frame_height;
     uint32_t x, y, width, height;  ///< region: its first pixel, and how many; y counts from the bottom
-    uint32_t stride = 1;           ///< from one pixel of the region to the next
+    uint32_t stride = 1;           ///< of the frame's pixels that a pixel of the region stands for, along each axis
     float clip_start, clip_end;    ///< depths: along the view direction, of a panorama distances
     float aperture_radius = 0, focus_distance = 1, aperture_rotation = 0, aperture_ratio = 1;
     uint32_t aperture_blades = 0;
+
+    /// The pixel of the frame that one of the region is: not the same of all that each stands for, so that edges along
+    /// rows and columns of the frame have their share.
+    std::array<uint32_t, 2> frame_pixel(uint32_t column, uint32_t row) const {
+        return {std::min(x + column * stride + row % stride, frame_width - 1),
+                std::min(y + row * stride + column % stride, frame_height - 1)};
+    }
 
     /// The ray through a point of the frame and a point of the lens; a length of its direction is one unit of depth.
     /// @param pixel a point of the frame in pixels

@@ -29,9 +29,9 @@ RayCounts render_camera_pass(const CameraPass &pass, Film &film, ErrorEstimate *
             NestedFilm *nested = film.nested();
             std::optional<Levels> levels;
             if (nested) levels.emplace();
-            const Camera &camera = pass.camera;
-            const PixelSample sample = render_pixel(pass, camera.x + x * camera.stride, camera.y + y * camera.stride,
-                                                    is_probe, counts[tile], levels ? &*levels : nullptr);
+            const auto [column, row] = pass.camera.frame_pixel(x, y);
+            const PixelSample sample =
+                render_pixel(pass, column, row, is_probe, counts[tile], levels ? &*levels : nullptr);
             film.set(pixel, sample);
             if (levels) nested->set(x, y, *levels);
             if (is_probe) error->set_blur(x, y, sample.global.blur + sample.caustic_map.blur);
