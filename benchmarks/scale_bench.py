@@ -38,8 +38,8 @@ def measure(name: str, passes: int) -> str:
 def main() -> int:
     """Measure the scenes asked for; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=["cornell", "caustic", "hall8", "plastic"])
-    parser.add_argument("--passes", type=int, default=24)
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--passes", type=int, default=12)
     asked = parser.parse_args()
     for name in asked.scenes:
         print(measure(name, asked.passes), flush=True)

@@ -97,8 +97,11 @@ def scaled(data: SceneData, scale: float) -> SceneData:
         transform[:, 3] *= scale
         return transform
 
+    # A sun's power is irradiance and its size an angle.
     lights = [
-        replace(
+        light
+        if light.type == LightType.SUN
+        else replace(
             light,
             transform=at_scale(light),
             power=tuple(p * scale**2 for p in light.power),
