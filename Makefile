@@ -9,7 +9,7 @@ PACKAGES := $(PLATFORMS:%=dist/photon_maps-$(VERSION)-%.zip)
 PYTHON := .venv/bin/python
 ZIG := $(CURDIR)/.venv/lib/python3.11/site-packages/ziglang/zig
 PIP := $(PYTHON) -m pip --quiet --disable-pip-version-check
-JOBS := $(shell getconf _NPROCESSORS_ONLN)
+JOBS := $(shell nproc 2>/dev/null || getconf _NPROCESSORS_ONLN)
 # The Embree that the wheel brings; a pattern, for the name carries a checksum.
 EMBREE := $(CURDIR)/build/native/embreex.libs/libembree4-*.so.4
 
@@ -67,6 +67,7 @@ help:
 	@echo 'make test-campaign   the tests that take long: furnaces, invariances, and comparisons with Cycles'
 	@echo 'make test-versions   the package in every Blender from 4.2 to 5.2 that is a Python module, 1.4 GB the first time'
 	@echo 'make test-first-render   install and F12 in the oldest Blender, the newest, and 5.0'
+	@echo 'make test-here the C++ checks on any system, by its compiler: HERE=python (with numpy and embreex)'
 	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
 	@echo 'make soak      what takes long to break: random calls under sanitizers, many renders, [SOAK_SECONDS=600] each'
 	@echo 'make mutate    break the program in some hundred places, one at a time, and see that a test notices'
@@ -258,7 +259,7 @@ built-checks: build/native/stamp
 # The same checks by the compiler of any system, for its release: HERE names the Python there, which has embreex.
 test-here:
 	cmake -S engine/native -B build/cmake/here -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE="$$(PYTHONPATH=engine/native \
-	    $(HERE) -c 'from photon_maps_native.library import embree_path; print(embree_path().as_posix())')"
+	    $(HERE) -c 'from photon_maps_native.library import embree_path; print(embree_path().as_posix(), end="")')"
 	cmake --build build/cmake/here
 	@$(call CTEST,here)
 

@@ -244,9 +244,9 @@ def small_camera(camera: Camera) -> Camera:
     """
     x, y, *sides = camera.region
     stride = max(1, math.isqrt(math.prod(sides) // SMALL_PIXELS))
-    while math.prod(-(-side // stride) for side in sides) > SMALL_PIXELS:
+    while math.prod(max(1, side // stride) for side in sides) > SMALL_PIXELS:
         stride += 1
-    return replace(camera, region=(x, y, *(-(-side // stride) for side in sides)), stride=stride)
+    return replace(camera, region=(x, y, *(max(1, side // stride) for side in sides)), stride=stride)
 
 
 def _pixels(camera: Camera) -> int:

@@ -56,7 +56,7 @@ class Chart:
     scene: str
     present: RenderSettings
     full: FullSize
-    stride: int  #: pixels of the full picture from one of the small one's to the next
+    stride: int  #: the small picture has one of each stride x stride pixels of the full one
     reference_error: float  #: of the small picture, without what blur is left in it
     reference_passes: int
     rows: tuple[Row, ...]

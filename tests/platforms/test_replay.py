@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+import shutil
 import subprocess
 import tomllib
 import zipfile
@@ -124,11 +125,13 @@ def windows_path(path: Path) -> str:
     return f"Z:{path}".replace("/", "\\")
 
 
-def replay_on_windows(libraries: Libraries, recording: Path, *options: str) -> np.ndarray:
+def replay_on_windows(
+    libraries: Libraries, recording: Path, *options: str, program: Path = BUILD / "replay.exe"
+) -> np.ndarray:
     """Run the recording under wine."""
     paths = (windows_path(libraries.native), windows_path(libraries.embree))
     environment = {"WINEPREFIX": str(ROOT / "build" / "wine"), "WINEDEBUG": "-all"}
-    return replay([WINE, str(BUILD / "replay.exe")], paths, recording, *options, **environment)
+    return replay([WINE, str(program)], paths, recording, *options, **environment)
 
 
 @pytest.fixture
@@ -146,6 +149,10 @@ def test_windows_can_remove_the_libraries_after_a_render(recording, on_windows):
     folder = on_windows.native.parents[1]
     replay_on_windows(on_windows, recording, "remove", windows_path(folder))
     assert not folder.exists()
+    libraries, running = unpacked("windows-x64", folder), folder / "replay.exe"
+    shutil.copy(BUILD / "replay.exe", running)
+    with pytest.raises(RuntimeError, match="Access denied"):
+        replay_on_windows(libraries, recording, "remove", windows_path(folder), program=running)
 
 
 @pytest.mark.parametrize("lacking", ["AVX512", "AVX2"])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "embree.h"
 
+#include <algorithm>
 #include <array>
 #include <new>
 
@@ -22,6 +23,7 @@ rtc::Functions resolve_functions(const DynamicLibrary &library) {
     library.resolve("rtcSetSceneFlags", f.rtcSetSceneFlags);
     library.resolve("rtcSetSceneBuildQuality", f.rtcSetSceneBuildQuality);
     library.resolve("rtcSetSceneProgressMonitorFunction", f.rtcSetSceneProgressMonitorFunction);
+    library.resolve("rtcCommitScene", f.rtcCommitScene);
     library.resolve("rtcJoinCommitScene", f.rtcJoinCommitScene);
     library.resolve("rtcNewGeometry", f.rtcNewGeometry);
     library.resolve("rtcReleaseGeometry", f.rtcReleaseGeometry);
@@ -56,10 +58,9 @@ Embree::Embree(const std::string &path) {
     } catch (const LibraryError &error) {
         throw EmbreeError(std::string("Embree cannot be loaded: ") + error.what());
     }
-    // All threads are the caller's, by rtcJoinCommitScene: threads of Embree's own would sleep in its code for good, so
-    // that Windows could neither free it nor replace its file.
-    const std::string threads = std::to_string(thread_count(0));
-    device_ = functions_.rtcNewDevice(("threads=" + threads + ",user_threads=" + threads).c_str());
+    const std::string slots = std::to_string(thread_count(0));
+    const std::string joined = "threads=" + slots + ",user_threads=" + slots;
+    device_ = functions_.rtcNewDevice(builds_are_joined ? joined.c_str() : nullptr);
     if (!device_) throw EmbreeError("Embree cannot be started on this processor");
     version_ = static_cast<uint32_t>(functions_.rtcGetDeviceProperty(device_, property_version));
     // The ray and hit structures above are those of 4.3 and later; another major version may differ in anything.
@@ -71,6 +72,21 @@ Embree::Embree(const std::string &path) {
 }
 
 Embree::~Embree() { functions_.rtcReleaseDevice(device_); }
+
+void Embree::commit(std::span<const rtc::Scene> scenes, int threads) const {
+    if (builds_are_joined) {
+        // Threads leave a scene when it is built, and find all that are.
+        const int joining = std::min(threads, thread_count(0));
+        parallel_for(joining, static_cast<size_t>(joining), nullptr, [&](size_t) {
+            for (const rtc::Scene scene : scenes) functions_.rtcJoinCommitScene(scene);
+        });
+    }
+    // What is built already is left alone; what failed above fails again, where it is seen.
+    for (const rtc::Scene scene : scenes) {
+        builds_are_joined ? functions_.rtcJoinCommitScene(scene) : functions_.rtcCommitScene(scene);
+        check("building the acceleration structure");
+    }
+}
 
 void Embree::check(const char *what) const {
     const int code = functions_.rtcGetDeviceError(device_);

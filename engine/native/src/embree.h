@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -62,6 +63,7 @@ struct Functions {
     void (*rtcSetSceneFlags)(Scene, SceneFlags);
     void (*rtcSetSceneBuildQuality)(Scene, BuildQuality);
     void (*rtcSetSceneProgressMonitorFunction)(Scene, bool (*monitor)(void *, double), void *);
+    void (*rtcCommitScene)(Scene);
     void (*rtcJoinCommitScene)(Scene);
     Geometry (*rtcNewGeometry)(Device, GeometryType);
     void (*rtcReleaseGeometry)(Geometry);
@@ -78,6 +80,15 @@ struct Functions {
 
 }  // namespace rtc
 
+/// Whether Embree builds by threads that join it, in place of its own, which would sleep in its code for good: so that
+/// Windows can free the library and replace its file. A build by such threads cannot be cancelled, for each of them
+/// would have to bear the same exception (oneTBB's task_group::wait()).
+#if defined(_WIN32)
+constexpr bool builds_are_joined = true;
+#else
+constexpr bool builds_are_joined = false;
+#endif
+
 /// A loaded Embree with one device; shared by the scenes made on it.
 class Embree {
   public:
@@ -92,6 +103,10 @@ class Embree {
     rtc::Device device() const { return device_; }
     /// major * 10000 + minor * 100 + patch
     uint32_t version() const { return version_; }
+    /// Builds scenes, the instanced before those that hold them, with up to so many threads of the caller's where
+    /// builds are joined.
+    /// @throws as check()
+    void commit(std::span<const rtc::Scene> scenes, int threads) const;
     /// @throws EmbreeError if a call failed since the last check; Cancelled or std::bad_alloc if that was why.
     void check(const char *what) const;
 

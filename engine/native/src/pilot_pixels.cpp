@@ -78,7 +78,8 @@ void PilotPixels::add(const CameraPass &pass, const std::atomic<bool> *cancel) {
         pixel.global.add(sample.global.radiance, is_first_half);
         pixel.narrow.add(sample.global.radiance - sample.global.blur, is_first_half);
         pixel.caustic.add(sample.caustic_map.radiance, is_first_half);
-        pixel.camera.add(sample.radiance() - sample.global.radiance - sample.caustic_map.radiance, is_first_half);
+        pixel.camera_light[added_] = sample.radiance() - sample.global.radiance - sample.caustic_map.radiance;
+        pixel.camera.add(pixel.camera_light[added_], is_first_half);
         pixel.direct.add(sample.direct, is_first_half);
         pixel.global_blur[added_] = sample.global.blur;
         pixel.caustic_blur[added_] = sample.caustic_map.blur;
@@ -142,6 +143,23 @@ double PilotPixels::squared_blur(Passes Pixel::*part, std::span<const Vec3> mean
             products[a][b] = products[b][a] = sum / static_cast<double>(pixels.size());
         }
     return of_difference * expected_square(products);
+}
+
+double PilotPixels::stratification() const {
+    // A quarter of the squared difference of two means is what the mean of both has less variance than either.
+    const std::vector<Vec3> means = this->means();
+    const float floor = squared_floor(means);
+    std::vector<float> of_one, of_two;  // V(1) - V(2), V(2) - V(4)
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const Passes &light = pixels_[i].camera_light;
+        const Vec3 first = light[0] - light[1], second = light[2] - light[3];
+        const Vec3 halves = (light[0] + light[1] - light[2] - light[3]) / 2;
+        of_one.push_back(relative_square((first * first + second * second) / 8, means[i], floor));
+        of_two.push_back(relative_square(halves * halves / 4, means[i], floor));
+    }
+    // A power law takes off 2^power times as much in the first doubling as in the next.
+    const double one = double{trimmed_mean(of_one)}, two = double{trimmed_mean(of_two)};
+    return two > 0 ? std::clamp(std::log2(one / two), 1.0, PilotNoise::most_stratified) : PilotNoise::most_stratified;
 }
 
 double PilotPixels::pixel_cost() const {

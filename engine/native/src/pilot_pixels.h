@@ -46,6 +46,9 @@ class PilotPixels {
     /// radiance: where few samples bring such light, those that happened to come tell little of the others.
     /// @param photons the same pixels with that light by photons, which tell how much there is to come
     double hidden_variance(RareLight light, const PilotPixels &photons) const;
+    /// Power by which the variance of the mean of n passes falls with n, of all that photons do not carry: at least 1,
+    /// as of independent passes, and at most PilotNoise::most_stratified.
+    double stratification() const;
     /// Sets the variances and the blur that the passes tell, once all are added.
     void find_noise(PilotNoise &noise) const;
     /// Relative square of the light that the pixels lack on average but others have, as far as noise cannot be the
@@ -78,7 +81,7 @@ class PilotPixels {
         uint32_t x, y;  ///< in the frame
         Moments camera, direct, global, caustic;
         Moments narrow;  ///< global by kernels of a quarter of the area
-        Passes radiance, global_blur, caustic_blur;
+        Passes radiance, camera_light, global_blur, caustic_blur;
     };
 
     std::vector<Vec3> means() const;

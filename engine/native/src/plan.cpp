@@ -15,12 +15,9 @@ double mean_squared_radius(double passes) { return 1.66 / std::cbrt(passes) - 0.
 double mean_inverse_squared_radius(double passes) { return 0.68 * std::cbrt(passes) + 0.32 / passes; }
 
 /// The variance of a pass's light where its random numbers are stratified over so many passes, over what the halves of
-/// the pilot passes tell. With n samples at the edges of shadows and things the variance of their mean goes as n^-1.5,
-/// elsewhere faster (Mitchell 1996); from 4 to 64 passes of twelve scenes as n^-1.2 to n^-1.5. What more bounces bring
-/// goes as n^-1.1, and is taken as n^-1. A quarter of the halves' squared difference is V(2) - V(4) (as of
-/// ErrorEstimate::compare_halves).
-double stratified(double passes) {
-    constexpr double power = 1.4;
+/// the pilot passes tell, if that of the mean of n passes goes as n^-power. A quarter of the halves' squared difference
+/// is V(2) - V(4) (as of ErrorEstimate::compare_halves). What more bounces bring goes as n^-1.1, and is taken as n^-1.
+double stratified(double passes, double power) {
     constexpr double most = 1 << 12;  // what is out of reach by then is so for other reasons
     const double doubling = std::exp2(-power);
     return doubling / (1 - doubling) * std::pow(PilotNoise::passes / std::min(passes, most), power - 1);
@@ -29,6 +26,7 @@ double stratified(double passes) {
 /// Parts of a picture's squared error, as of one pass.
 struct SquaredError {
     double seen;         ///< noise of what the eye sees without diffuse bounces
+    double power;        ///< by which passes stratify that
     double independent;  ///< noise of what neither passes stratify nor radii change
     double photons;
     /// By the kernels' width, taken to go with their squared radius: it goes with the power 2 of that where light is
@@ -38,7 +36,8 @@ struct SquaredError {
 
     /// That of each of so many passes.
     double noise(double passes, bool shrinks) const {
-        return seen * stratified(passes) + independent + photons * (shrinks ? mean_inverse_squared_radius(passes) : 1);
+        return seen * stratified(passes, power) + independent +
+               photons * (shrinks ? mean_inverse_squared_radius(passes) : 1);
     }
     /// That of their mean.
     double after(double passes, bool shrinks) const {
@@ -50,6 +49,7 @@ struct SquaredError {
 /// @param radius over that of the pilot passes
 SquaredError squared_error(const PilotNoise &noise, double global, double caustic, double radius) {
     SquaredError squared{.seen = noise.camera_variance - noise.path_variance,
+                         .power = noise.stratification,
                          .independent = noise.path_variance,
                          .photons = 0,
                          .blur = noise.caustic.blur,
@@ -133,7 +133,7 @@ uint32_t light_samples_for(const PilotNoise &noise, const Plan &plan, bool shrin
     constexpr double most = 16;
     const auto global = static_cast<double>(plan.counts.global), caustic = static_cast<double>(plan.counts.caustic);
     const SquaredError squared = squared_error(noise, global, caustic, double{plan.global_radius});
-    const double direct = noise.direct_variance * stratified(plan.passes);
+    const double direct = noise.direct_variance * stratified(plan.passes, noise.stratification);
     const double other = squared.noise(plan.passes, shrinks) - direct;
     // With k samples: (other + direct / k) * (rest + k * light_cost).
     const double rest = pass_cost(noise, global, caustic, double{plan.global_radius}) - noise.light_cost;

@@ -31,11 +31,14 @@ struct MapNoise {
 
 /// What pilot passes found.
 struct PilotNoise {
-    static constexpr uint32_t passes = 4;  ///< that pilots have
+    static constexpr uint32_t passes = 4;           ///< that pilots have
+    static constexpr double most_stratified = 1.4;  ///< by more passes than pilots have, as measured
 
     double camera_variance = 0;  ///< of all that photons do not carry
     double direct_variance = 0;  ///< part of it that more light samples take away
     double path_variance = 0;    ///< part of it by diffuse bounces of cameras' paths
+    /// Power by which the variance of the mean of passes falls with their number, of what the eye sees without those.
+    double stratification = most_stratified;
     MapNoise global, caustic;
     double lack = 0;         ///< relative square of the light that is missing in all pilot passes
     double pixel_cost = 0;   ///< of the cameras' paths and their estimates of a whole pass, in rays

@@ -145,6 +145,7 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first, std::span<const Indi
     for (Pilot &pilot : pilots) {
         PilotNoise &noise = pilot.noise;
         pilot.pixels.find_noise(noise);
+        noise.stratification = pilots.front().pixels.stratification();  // of what is seen alike by all
         for (const Pilot &other : pilots) noise.lack = std::max(noise.lack, pilot.pixels.squared_lack(other.pixels));
         noise.pixel_cost = frame * pilot.pixels.pixel_cost();
         noise.light_cost = frame * light_sample_cost * pilot.pixels.light_samples();
@@ -185,12 +186,12 @@ void Render::make_plan() {
 
     // Where there will be much to do, look again with more photons: noise hides how kernels blur. Where paths seem
     // better, only if that is next to nothing beside what they have to do.
-    // In steps: next to the same scene, as in another unit of length, has the same photons again.
-    const double wanted_times = choice->pilot_cost > 0 ? share_of_pilots * choice->plan.cost / choice->pilot_cost : 0;
-    const double times = std::exp2(std::round(2 * std::log2(wanted_times)) / 2);
+    const double times = choice->pilot_cost > 0 ? share_of_pilots * choice->plan.cost / choice->pilot_cost : 0;
     if (times >= (choice->pilot.indirect < Indirect::paths ? worthwhile : most)) {
+        // By powers of sqrt 2, so that rounding errors, as of another unit of length, do not bring other photons.
+        const double step = std::exp2(std::round(2 * std::log2(std::min(times, most))) / 2);
         const auto more = [&](uint64_t count, uint64_t with_room) {
-            const auto wanted = static_cast<uint64_t>(std::min(times, most) * static_cast<double>(count));
+            const auto wanted = static_cast<uint64_t>(step * static_cast<double>(count));
             return is_limited_ ? std::min(wanted, with_room) : wanted;
         };
         counts_ = {more(counts_.global, usual.global), more(counts_.caustic, usual.caustic)};

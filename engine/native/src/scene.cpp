@@ -71,8 +71,7 @@ void Scene::build(int threads, const std::atomic<bool> *cancel) {
     const std::lock_guard lock(build_mutex_);
     if (built_) return;
     find_world_edges(threads, cancel);
-    make_embree_scenes(cancel);
-    build_embree_scenes(threads, cancel);
+    embree_->commit(make_embree_scenes(cancel), threads);
     built_ = true;
 }
 
@@ -153,7 +152,8 @@ Scene::SceneHandle Scene::new_scene(const std::atomic<bool> *cancel) const {
     f.rtcSetSceneBuildQuality(scene.get(), rtc::BuildQuality::medium);
     // Embree asks now and then whether to go on.
     const auto go_on = [](void *flag, double) { return !*static_cast<const std::atomic<bool> *>(flag); };
-    if (cancel) f.rtcSetSceneProgressMonitorFunction(scene.get(), go_on, const_cast<std::atomic<bool> *>(cancel));
+    if (cancel && !builds_are_joined)
+        f.rtcSetSceneProgressMonitorFunction(scene.get(), go_on, const_cast<std::atomic<bool> *>(cancel));
     return scene;
 }
 
@@ -170,7 +170,7 @@ void Scene::attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id, ui
     f.rtcReleaseGeometry(geometry);
 }
 
-void Scene::make_embree_scenes(const std::atomic<bool> *cancel) {
+std::vector<rtc::Scene> Scene::make_embree_scenes(const std::atomic<bool> *cancel) {
     top_scene_.reset();
     mesh_scenes_.clear();
     const rtc::Functions &f = embree_->functions();
@@ -202,19 +202,12 @@ void Scene::make_embree_scenes(const std::atomic<bool> *cancel) {
         f.rtcReleaseGeometry(geometry);
     }
     embree_->check("reading the scene");
-}
 
-void Scene::build_embree_scenes(int threads, const std::atomic<bool> *cancel) {
-    // Threads that join a scene leave it when it is built, so that all of them find the instanced ones before the top.
-    const auto join = [&](rtc::Scene scene) {
-        embree_->functions().rtcJoinCommitScene(scene);
-        embree_->check("building the acceleration structure");  // Embree keeps an error for the thread that had it
-    };
-    parallel_for(threads, static_cast<size_t>(threads), cancel, [&](size_t) {
-        for (const SceneHandle &scene : mesh_scenes_)
-            if (scene) join(scene.get());
-        join(top_scene_.get());
-    });
+    std::vector<rtc::Scene> scenes;
+    for (const SceneHandle &scene : mesh_scenes_)
+        if (scene) scenes.push_back(scene.get());
+    scenes.push_back(top_scene_.get());
+    return scenes;
 }
 
 bool Scene::intersect(const Ray &ray, SurfacePoint &hit) const {

@@ -168,8 +168,8 @@ class Scene {
     uint32_t embree_mask(const Instance &instance) const;
     Vec3 transmittance_of_transparent(Ray ray, uint64_t &rays) const;
     void find_world_edges(int threads, const std::atomic<bool> *cancel);
-    void make_embree_scenes(const std::atomic<bool> *cancel);
-    void build_embree_scenes(int threads, const std::atomic<bool> *cancel);
+    /// Returns those that are to be built, the instanced first.
+    std::vector<rtc::Scene> make_embree_scenes(const std::atomic<bool> *cancel);
     SceneHandle new_scene(const std::atomic<bool> *cancel) const;
     void attach_triangles(rtc::Scene scene, const Mesh &mesh, uint32_t id, uint32_t mask) const;
 

@@ -57,6 +57,8 @@ void check_passes(Checks &checks) {
     checks.near(plan_for(paths, 0.01, true).passes / plain, 1, 1e-3, "passes of paths");
     checks.near(plan_for(seen, 0.01, true).passes / stratified, 1, 1e-3, "stratified passes");
     checks.near(plan_for(seen, 0.01, true).cost / (1'000 * stratified), 1, 1e-3, "their cost");
+    seen.stratification = 1;
+    checks.near(plan_for(seen, 0.01, true).passes / plain, 1, 1e-3, "passes that stratify each other no better");
 }
 
 void check_radius(Checks &checks) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How wide Automatic makes the global map's kernels: by what they blur, which noise must neither hide nor feign, and
-whatever the unit of length."""
+"""What Automatic chooses by pilot passes: kernels by what they blur, which noise must neither hide nor feign; photons
+by what more passes take away; and the same in every unit of length."""
 
 from __future__ import annotations
 
@@ -35,6 +35,14 @@ def test_what_kernels_do_not_blur_gets_wide_ones() -> None:
 
 def test_behind_a_gap_kernels_are_narrow() -> None:
     assert chosen_over_usual(SCENES["gap"].data()) < 0.9
+
+
+def test_noise_that_passes_do_not_stratify_is_left_more_time() -> None:
+    # Most rays to the sky miss the window: passes take that variance away as 1 / n, and photons would only slow them.
+    data, settings = SCENES["window"].data(), box_filtered(**AUTOMATIC)
+    chosen = [Picture(data, replace(settings, seed=seed)).run(1).render.statistics() for seed in range(3)]
+    assert np.exp(np.mean([np.log(each.photon_count) for each in chosen])) < 44_000
+    assert min(each.light_samples for each in chosen) == 3
 
 
 def test_the_unit_of_length_does_not_change_the_plan() -> None:
