@@ -142,10 +142,11 @@ std::vector<Pilot> Render::run_pilot_passes(uint32_t first, std::span<const Indi
         return (static_cast<double>(traced) + storing_cost * static_cast<double>(kept)) / emitted;
     };
     const double frame = static_cast<double>(camera_.frame_width) * camera_.frame_height;
+    const double stratification = pilots.front().pixels.stratification();  // of what the eye sees alike by all ways
     for (Pilot &pilot : pilots) {
         PilotNoise &noise = pilot.noise;
         pilot.pixels.find_noise(noise);
-        noise.stratification = pilots.front().pixels.stratification();  // of what is seen alike by all
+        noise.stratification = stratification;
         for (const Pilot &other : pilots) noise.lack = std::max(noise.lack, pilot.pixels.squared_lack(other.pixels));
         noise.pixel_cost = frame * pilot.pixels.pixel_cost();
         noise.light_cost = frame * light_sample_cost * pilot.pixels.light_samples();
