@@ -77,7 +77,7 @@ help:
 	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'
 	@echo 'make prediction    the time that the chart of a scene foretells, over the true one: [PREDICTION="--scenes room"]'
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
-	@echo 'make sweep     Automatic beside the best of many settings by hand: [SWEEP="--scenes gap"]'
+	@echo 'make sweep     Automatic beside the best of many settings by hand, 45 minutes: [SWEEP="--scenes gap"]'
 	@echo 'make scale     the time of scenes a thousand times smaller and larger: [SCALE="--scenes hall8"]'
 	@echo 'make limits    how and how badly the method fails, 15 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'

@@ -41,16 +41,17 @@ class Crossing:
 
 
 def slope(curve: Curve) -> float:
-    """Return the power of the time with which the error goes, by least squares in the logarithms; nan for one point."""
+    """Return the power of the time with which the error goes in the curve's second half, by least squares in the
+    logarithms; nan for one point. The first half is steeper where a plan takes its time before the first picture."""
     if len(curve) < 2:
         return float("nan")
-    x, y = np.log(np.array(curve, float)).T
+    x, y = np.log(np.array(curve[max(0, len(curve) // 2 - 1) :], float)).T
     return float(np.polyfit(x, y, 1)[0])
 
 
 def is_flat(curve: Curve) -> bool:
     """Return whether the error does not fall any more in the curve's second half."""
-    return len(curve) > 2 and not slope(curve[len(curve) // 2 - 1 :]) < FLAT
+    return len(curve) > 2 and not slope(curve) < FLAT
 
 
 def time_to(curve: Curve, target: float) -> Crossing | None:
@@ -65,7 +66,7 @@ def time_to(curve: Curve, target: float) -> Crossing | None:
             return Crossing(float(before * (after / before) ** share), Certainty.MEASURED)
     power = slope(curve)
     last_seconds, last_error = curve[-1]
-    if not power < FLAT or is_flat(curve):
+    if not power < FLAT:
         return None
     seconds = last_seconds * (target / last_error) ** (1 / power)
     return Crossing(float(seconds), Certainty.EXTRAPOLATED) if seconds <= REACH * last_seconds else None

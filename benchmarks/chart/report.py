@@ -128,8 +128,11 @@ def where_others_lead(rows: Rows) -> str:
         others = {name: here for name, here in of_scene.items() if name in RIVALS}
         if default is None or not others:
             continue
-        # What both come to; to an error that only one reaches there is no ratio.
-        ratios = {name: price(curve(here), curve(default)).ratio for name, here in others.items()}
+        # What both come to; to an error that only one reaches there is no ratio. Where the default was there from its
+        # first picture on, the ratio is one at least, and does not tell who is nearest.
+        prices = {name: price(curve(here), curve(default)) for name, here in others.items()}
+        ratios = {name: found.ratio for name, found in prices.items() if found.sign != ">"}
+        ratios = ratios or {name: found.ratio for name, found in prices.items()}
         best = min(ratios, key=lambda name: ratios[name])
         entry = (scene, best, ratios[best])
         (behind if ratios[best] < 1 / TELLING else ahead if ratios[best] > TELLING else untold).append(entry)
@@ -209,8 +212,8 @@ def bring_into(document: Path, found: Mapping[str, str], subject: str = "chart")
 
 
 def bring_pictures(folder: Path, images: Path) -> None:
-    """Copy the figures to where the documents have them."""
-    for path in sorted(folder.glob("*.png")):
+    """Copy the figures of scenes and methods to where the documents have them."""
+    for path in sorted([*folder.glob("chart_*.png"), *folder.glob("method_*.png")]):
         shutil.copyfile(path, images / path.name)
 
 

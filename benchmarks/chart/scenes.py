@@ -8,9 +8,8 @@ their references are kept in `references`: float16, as they were made by
 
 from two renders with seeds of their own, whose difference tells the noise. Where path tracing converges, it is path
 traced. Where it would take hours (caustics, the gap, many lamps, a sky in a window) it is the photon map that is run,
-for far more passes, with four times the photons and so with a smaller radius than any measured picture has, and with
-radii that each pixel chooses where there are caustics; that it is not biased, the bias of Cycles and of path tracing in
-the same chart bears witness.
+for far more passes than any measured picture has, with eight photons a pixel, and with radii that each pixel chooses
+where there are caustics; how little it is biased, docs/chart.md tells.
 """
 
 from __future__ import annotations
@@ -36,14 +35,14 @@ from tests.shapes import Picture
 REFERENCES = Path(__file__).parent / "references"
 REFERENCE_SEEDS = (1 << 20, 1 << 21)  #: no measured picture shares its random numbers
 
-#: Photons of each pass of the scenes made here: two for each pixel. The engine's least number would be four, more than
-#: it takes for larger pictures.
+#: Photons of each pass of the scenes made here, where a part of the method is measured by itself: two for each pixel.
+#: The engine's least number would be four, more than it takes for larger pictures.
 PHOTONS = 2 * rooms.SIDE**2
 
 PATHS: dict[str, object] = {"integrator": Integrator.PATH_TRACING}
-MANY_PHOTONS: dict[str, object] = {"photon_count": 1 << 17}  #: four times those of the measured pictures
+MANY_PHOTONS: dict[str, object] = {"photon_count": 1 << 17}  #: eight for each pixel of the scenes made here
 SHARP_CAUSTICS = MANY_PHOTONS | {"estimate": Estimate.ADAPTIVE}
-SKY_IN_A_WINDOW = MANY_PHOTONS | {"light_samples": 16}
+SKY_IN_A_WINDOW = MANY_PHOTONS | {"light_samples": 16}  #: direct light is what is noisy there
 
 
 class StaleReference(Exception):
@@ -68,7 +67,7 @@ class Scene:
     passes: int = 0  #: of each of the reference's two renders
     reference_fields: dict[str, object] = field(default_factory=dict)  #: their settings
     given: ReferenceScene | None = None  #: has a picture by other renderers
-    photon_count: int = PHOTONS  #: of each pass; 0: the engine's choice
+    photon_count: int = PHOTONS  #: of each pass where a part is measured by itself; 0: the engine's choice
 
     @cached_property
     def description(self) -> ChartScene:

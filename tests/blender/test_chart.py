@@ -48,15 +48,14 @@ def charted_before(request, corner, extension, charts):
 
 
 def test_chart_of_a_corner(corner, extension, charted):
-    from bl_ext.user_default.photon_maps.engine.chart.curve import FLATTEST_SLOPE
     from bl_ext.user_default.photon_maps.engine.chart.outcome import choices
 
-    # The error falls: noise with the square root of the passes, blur with their cube root, or faster, however many
-    # there are; and it goes on falling.
+    # The error falls: noise with the square root of the passes, blur of smooth light with their cube root, however many
+    # passes there are; and it goes on falling.
     present = charted.rows[0].curve
     first, last = present.points[0], present.points[-1]
     assert [point.passes for point in present.points] == [2**i for i in range(len(present.points))]
-    assert len(present.points) > 2 and present.slope < FLATTEST_SLOPE
+    assert len(present.points) > 2 and present.slope < -0.1
     assert math.log(last.error / first.error) < -0.3 * math.log(last.passes / first.passes)
     # What is foretold is positive, and takes the longer the less the error; so are the present settings' passes.
     foretold = [charted.until(charted.rows[0], error) for error in (0.2, 0.1, 0.05, 0.02, 0.01)]
