@@ -258,8 +258,9 @@ built-checks: build/native/stamp
 
 # The same checks by the compiler of any system, for its release: HERE names the Python there, which has embreex.
 test-here:
-	cmake -S engine/native -B build/cmake/here -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE="$$(PYTHONPATH=engine/native \
-	    $(HERE) -c 'from photon_maps_native.library import embree_path; print(embree_path().as_posix(), end="")')"
+	embree="$$(PYTHONPATH=engine/native \
+	    $(HERE) -c 'from photon_maps_native.library import embree_path; print(embree_path().as_posix(), end="")')" && \
+	cmake -S engine/native -B build/cmake/here -DPHOTON_MAPS_TESTS=ON -DPHOTON_MAPS_EMBREE="$$embree"
 	cmake --build build/cmake/here
 	@$(call CTEST,here)
 
