@@ -79,7 +79,7 @@ help:
 	@echo 'make calibration   the error that renders estimate of themselves, over the true one: [CALIBRATION="--scenes gap"]'
 	@echo 'make sweep     Automatic beside the best of many settings by hand, 45 minutes: [SWEEP="--scenes gap"]'
 	@echo 'make scale     the time of scenes a thousand times smaller and larger: [SCALE="--scenes hall8"]'
-	@echo 'make limits    how and how badly the method fails, 15 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
+	@echo 'make limits    how and how badly the method fails, 4 minutes: [LIMIT=leaks] [DOCUMENTS=1]'
 	@echo 'make seed      repeat the experiment of the course report: scene, figures and tables in build/seed'
 	@echo 'make package   the extension for Blender on Linux, Windows and macOS, in dist'
 	@echo 'make docs      all pages as one site in build/docs, links checked'
