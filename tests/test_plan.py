@@ -40,9 +40,9 @@ def test_behind_a_gap_kernels_are_narrow() -> None:
 def test_noise_that_passes_do_not_stratify_is_left_more_time() -> None:
     # Most rays to the sky miss the window: passes take that variance away as 1 / n, and photons would only slow them.
     data, settings = SCENES["window"].data(), box_filtered(**AUTOMATIC)
-    chosen = [Picture(data, replace(settings, seed=seed)).run(1).render.statistics() for seed in range(3)]
-    assert np.exp(np.mean([np.log(each.photon_count) for each in chosen])) < 44_000
-    assert min(each.light_samples for each in chosen) == 3
+    chosen = [Picture(data, replace(settings, seed=seed)).run(1).render.statistics() for seed in range(8)]
+    assert np.exp(np.mean([np.log(each.photon_count) for each in chosen])) < 39_000
+    assert np.mean([each.light_samples for each in chosen]) > 2.25
 
 
 def test_the_unit_of_length_does_not_change_the_plan() -> None:

@@ -41,6 +41,7 @@ struct CameraPass {
     const PhotonImportance *importance;   ///< null: rays go on by the closures alone
     const ShadowPhotons *shadow_photons;  ///< null: all shadow rays are traced
     Indirect indirect;
+    bool gathers_rough;  ///< the caustic map is asked by rough reflections, too
     uint32_t max_bounces;
     uint32_t light_samples;  ///< of each source, or choices among many, at the first diffuse vertices
     uint32_t seed;

@@ -60,7 +60,7 @@ bool CameraPath::step() {
         }
     } else {
         plan(hit, shading);
-        go_diffuse_ = go_glossy_ = 0;
+        go_on_ = {};
     }
     return go_on(hit, shading);
 }
@@ -108,35 +108,40 @@ void CameraPath::describe(const SurfacePoint &hit, const Shading &shading, float
 /// What the photons bring to a surface that the eye sees: but for a final gather, all but the lights' own.
 void CameraPath::gather(const SurfacePoint &hit, const Shading &shading) {
     if (asks_emitters() && pass_.lights.has_emissive_triangles()) meet_emitters(hit, shading);
+    const bool by_rough = pass_.gathers_rough && word_.diffuse == 0 && !word_.is_rough;
+    const Lobes lobes = by_rough ? diffuse_lobes | rough_reflection : diffuse_lobes;
     if (levels_ && word_.diffuse == 0)
-        add_caustic_levels(hit, shading);
+        add_caustic_levels(hit, shading, lobes);
     else
-        add_photons(pass_.maps->caustic, hit, shading, glossy_lobes);
-    if (pass_.indirect == Indirect::photons) add_photons(pass_.maps->global, hit, shading, diffuse_lobes);
+        add_photons(pass_.maps->caustic, hit, shading, lobes, glossy_part);
+    if (pass_.indirect == Indirect::photons) add_photons(pass_.maps->global, hit, shading, diffuse_lobes, diffuse_part);
 }
 
 /// All the light of a surface that a final gather met.
 void CameraPath::gather_all(const SurfacePoint &hit, const Shading &shading) {
-    add_photons(pass_.maps->caustic, hit, shading, glossy_lobes);
-    add_photons(pass_.maps->global, hit, shading, diffuse_lobes);
+    add_photons(pass_.maps->caustic, hit, shading, diffuse_lobes, glossy_part);
+    add_photons(pass_.maps->global, hit, shading, diffuse_lobes, diffuse_part);
 }
 
+/// @param lobes by which the surface shows the photons
 /// @param last the scattering after which the photons came
-void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes last) {
+void CameraPath::add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes lobes,
+                             Part last) {
     ++counts_.estimates;
-    const Gathered gathered = gather_radiance(map, hit, shading);
-    word_.then(diffuse_lobes).then(last).buffer(sample_) += throughput_ * gathered.radiance;
+    const Gathered gathered = gather_radiance(map, hit, shading, lobes);
+    word_.then(diffuse_part).then(last).buffer(sample_) += throughput_ * gathered.radiance;
     sample_.photon_density += average(throughput_) * gathered.density;
     if (!is_probe_) return;
     MapSample &sample = &map == &pass_.maps->caustic ? sample_.caustic_map : sample_.global;
     sample.radiance += throughput_ * gathered.radiance;
-    sample.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading).radiance);
+    sample.blur += throughput_ * (gathered.radiance - gather_radiance(halved(map), hit, shading, lobes).radiance);
 }
 
 /// What the caustic map brings to what the eye sees, by all radii.
-void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shading) {
+/// @param lobes by which the surface shows the photons
+void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shading, Lobes lobes) {
     ++counts_.estimates;
-    const Levels gathered = throughput_ * gather_levels(pass_.maps->caustic, hit, shading);
+    const Levels gathered = throughput_ * gather_levels(pass_.maps->caustic, hit, shading, lobes);
     *levels_ += gathered;
     sample_.caustic += gathered.color(provisional_level);
     if (is_probe_) sample_.caustic_map.radiance += gathered.color(provisional_level);
@@ -146,18 +151,18 @@ void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shad
 /// Shares the ways to go on by what they bring.
 void CameraPath::plan(const SurfacePoint &hit, const Shading &shading) {
     const float straight = average(shading.transparency);
-    const float reflected = average(albedo(shading, glossy_reflection));
-    const float transmitted = average(albedo(shading, glossy_transmission));
-    const float glossy = reflected + transmitted;
-    const float diffuse = goes_on_diffusely() ? average(albedo(shading, diffuse_lobes)) : 0;
-    const float sum = straight + glossy + diffuse;
+    parts_ = parts_of(shading);
+    const float diffuse = goes_on_diffusely() ? average(albedo(shading, parts_[diffuse_part])) : 0;
+    const float rough = average(albedo(shading, parts_[rough_part]));
+    const float reflected = average(albedo(shading, parts_[glossy_part] & reflection_lobes));
+    const float transmitted = average(albedo(shading, parts_[glossy_part] & transmissive_lobes));
+    const float sum = straight + diffuse + rough + reflected + transmitted;
     const float scale = sum > 0 ? 1 / sum : 0;
     go_straight_ = straight * scale;
-    go_glossy_ = glossy * scale;
-    go_diffuse_ = diffuse * scale;
+    go_on_ = {diffuse * scale, rough * scale, (reflected + transmitted) * scale};
     splits_ = word_.length < whole_scatterings && reflected > 0 && transmitted > 0;
     guide_.reset();
-    if (!pass_.importance || go_diffuse_ <= 0) return;
+    if (!pass_.importance || go_on_[diffuse_part] <= 0) return;
     const auto u = sequence_.next();
     if (const IncomingFlux *incoming = pass_.importance->around(hit, u[0], u[1])) guide_.emplace(*incoming, shading);
 }
@@ -165,25 +170,31 @@ void CameraPath::plan(const SurfacePoint &hit, const Shading &shading) {
 /// A direction in which the path goes on.
 std::optional<ScatterSample> CameraPath::draw(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
                                               const std::array<float, 3> &u) const {
-    if (guide_ && lobes == diffuse_lobes) return sample_guided(*guide_, shading, u);
+    if (guide_ && (lobes & diffuse_lobes)) return sample_guided(*guide_, shading, u);
     return sample(shading, lobes, u, transport(hit));
 }
 
 bool CameraPath::go_on(const SurfacePoint &hit, const Shading &shading) {
-    if (go_straight_ + go_glossy_ + go_diffuse_ <= 0) return false;
+    if (go_straight_ + go_on_[diffuse_part] + go_on_[rough_part] + go_on_[glossy_part] <= 0) return false;
     const auto u = sequence_.next();
     if (u[3] < go_straight_) return pass_straight(hit, shading, u[3] / go_straight_);
-    const bool is_glossy = u[3] < go_straight_ + go_glossy_ || go_diffuse_ <= 0;
-    const float chosen = is_glossy ? go_glossy_ : go_diffuse_;
-    if (chosen <= 0) return false;
-    const float left = (u[3] - go_straight_ - (is_glossy ? 0 : go_glossy_)) / chosen;
-    const std::array<float, 4> rest{u[0], u[1], u[2], left};
-    if (!is_glossy) return scatter(hit, shading, diffuse_lobes, chosen, rest);
-    if (!splits_) return scatter(hit, shading, glossy_lobes, chosen, rest);
+
+    // By one of the parts; by the last that is possible, whatever the rounding.
+    float left = u[3] - go_straight_;
+    std::optional<Part> part;
+    for (const Part next : {glossy_part, rough_part, diffuse_part}) {
+        if (go_on_[next] <= 0) continue;
+        if (part) left -= go_on_[*part];
+        part = next;
+        if (left < go_on_[next]) break;
+    }
+    if (!part) return false;
+    const std::array<float, 4> rest{u[0], u[1], u[2], left / go_on_[*part]};
+    if (*part != glossy_part || !splits_) return scatter(hit, shading, *part, parts_[*part], rest);
     CameraPath reflected = *this;
     reflected.sequence_ = sequence_.branch();
-    if (reflected.scatter(hit, shading, glossy_reflection, chosen, rest)) reflected.follow();
-    return scatter(hit, shading, glossy_transmission, chosen, rest);
+    if (reflected.scatter(hit, shading, glossy_part, parts_[glossy_part] & reflection_lobes, rest)) reflected.follow();
+    return scatter(hit, shading, glossy_part, parts_[glossy_part] & transmissive_lobes, rest);
 }
 
 /// Goes on through a transparent surface.
@@ -200,9 +211,9 @@ bool CameraPath::pass_straight(const SurfacePoint &hit, const Shading &shading, 
     return true;
 }
 
-/// Goes on by some lobes, which were chosen with a probability.
+/// Goes on by some lobes of a part that was chosen.
 /// @param u in [0, 1), the last for the roulette
-bool CameraPath::scatter(const SurfacePoint &hit, const Shading &shading, Lobes lobes, float chosen,
+bool CameraPath::scatter(const SurfacePoint &hit, const Shading &shading, Part part, Lobes lobes,
                          const std::array<float, 4> &u) {
     const auto drawn = draw(hit, shading, lobes, {u[0], u[1], u[2]});
     if (!drawn) return false;
@@ -212,11 +223,11 @@ bool CameraPath::scatter(const SurfacePoint &hit, const Shading &shading, Lobes 
         else if (bodies_ > 0)
             --bodies_;
     }
-    throughput_ *= drawn->weight / chosen;
+    throughput_ *= drawn->weight / go_on_[part];
     if (!survives(throughput_, u[3])) return false;
-    origin_ = {drawn->is_singular ? 0 : chosen * drawn->pdf, hit.position, hit.shading_normal,
+    origin_ = {drawn->is_singular ? 0 : go_on_[part] * drawn->pdf, hit.position, hit.shading_normal,
                (lobes_of(shading) & transmissive_lobes) != 0, asks_every_source()};
-    word_ = word_.then(lobes);
+    word_ = word_.then(part);
     state_ = scattered(state_, *drawn);
     ray_ = {hit.origin_towards(drawn->direction), drawn->direction};
     ray_.kinds = visible_kind(drawn->lobe);

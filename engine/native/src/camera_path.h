@@ -3,13 +3,17 @@
 //
 // Each closure is diffuse (D) or glossy (S, specular however rough); what a surface scatters is the sum of both, so
 // each path of light is exactly one word, and one row of this table carries it (Heckbert 1990; * any number, + at least
-// one):
+// one). R is a rough reflection, a glossy one, of a surface that is diffuse, too: most things that are not metal or
+// glass:
 //
 //   from light to eye       photon map                             path tracing
 //   L E                     the ray meets the light                the same
 //   L S* S E                the path goes on until it meets the    the same
 //                           light, and at its vertices samples
 //                           the lights (multiple importance)
+//   L S+ R S* E             caustic map, at the first R from       the path goes on
+//                           the eye: a lamp's image in glass is
+//                           met by chance from there
 //   L D S* E                light sampling at D, and a ray from    the same, by the path's
 //                           D that may meet an emissive mesh       next ray
 //   L S+ D S* E             caustic map, at the first D from       the path goes on

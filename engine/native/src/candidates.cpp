@@ -8,9 +8,9 @@ Vec3 scattered_share(const Query &query, Vec3 incoming) {
     float cosine = std::max(dot(incoming, query.normal), least_cosine);
     // The ratio of the cosines is bounded as shading_ratio is, and nothing else: sheen seen from the side has no bound.
     for (const Closure &closure : query.shading->scattering())
-        if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen)
+        if (lobes_of(closure) & query.lobes)
             cosine = std::max(cosine, dot(incoming, closure.normal) / max_shading_ratio);
-    return evaluate(*query.shading, diffuse_reflection, incoming, Transport::radiance) / cosine;
+    return evaluate(*query.shading, query.lobes, incoming, Transport::radiance) / cosine;
 }
 
 KernelRegion region_of(const EdgeIndex &edges, const Query &query, Kernel &kernel) {

@@ -10,14 +10,12 @@ namespace photon_maps {
 namespace {
 
 /// By ClosureType.
-constexpr std::array<Lobes, 6> lobes_by_type{diffuse_reflection, diffuse_transmission, diffuse_reflection,
-                                             glossy_reflection,  glossy_transmission,  glossy_lobes};
-constexpr Lobes reflection_lobes = diffuse_reflection | glossy_reflection;
-
-Lobes lobes_of(ClosureType type) { return lobes_by_type[static_cast<size_t>(type)]; }
+constexpr std::array<Lobes, 6> lobes_by_type{diffuse_reflection,  diffuse_transmission,
+                                             diffuse_reflection,  glossy_reflection,
+                                             glossy_transmission, glossy_reflection | glossy_transmission};
 
 Vec3 albedo(const Closure &closure, Lobes lobes) {
-    const Lobes own = lobes_of(closure.type) & lobes;
+    const Lobes own = lobes_of(closure) & lobes;
     Vec3 sum;
     if (own & reflection_lobes) sum += closure.reflected;
     if (own & ~reflection_lobes) sum += closure.transmitted;
@@ -29,8 +27,8 @@ bool has_bumps(const Shading &shading, const Closure &closure) {
 }
 
 Scattering scatter(const Shading &shading, const Closure &closure, Lobes lobes, Vec3 incoming, Transport transport) {
-    if (lobes_of(closure.type) & glossy_lobes)
-        return scatter_microfacet(closure, lobes, shading.outgoing, incoming, transport);
+    if (lobes_of(closure) & glossy_lobes)
+        return scatter_microfacet(closure, lobes & lobes_of(closure), shading.outgoing, incoming, transport);
     Scattering part;
     if (is_lambertian(closure)) {
         part.pdf = dot(closure.normal, incoming) / pi;  // Lambert's, without a call
@@ -48,7 +46,7 @@ Scattering scatter(const Shading &shading, const Closure &closure, Lobes lobes, 
 bool reaches(const Shading &shading, const Closure &closure, Lobes lobes, Vec3 incoming) {
     const bool is_reflection = dot(incoming, shading.normal) > 0;
     const Lobes side = is_reflection ? reflection_lobes : ~reflection_lobes;
-    return (lobes_of(closure.type) & lobes & side) && (dot(incoming, closure.normal) > 0) == is_reflection;
+    return (lobes_of(closure) & lobes & side) && (dot(incoming, closure.normal) > 0) == is_reflection;
 }
 
 /// The sum over all closures: f |cos|, and the density with which sample() draws the direction.
@@ -103,9 +101,14 @@ bool is_lambertian(const Closure &closure) {
     return closure.type == ClosureType::diffuse && closure.roughness < least_diffuse_roughness;
 }
 
+Lobes lobes_of(const Closure &closure) {
+    if (closure.type == ClosureType::reflection && closure.roughness >= least_rough) return rough_reflection;
+    return lobes_by_type[static_cast<size_t>(closure.type)];
+}
+
 Lobes lobes_of(const Shading &shading) {
     Lobes lobes = 0;
-    for (const Closure &closure : shading.scattering()) lobes |= lobes_of(closure.type);
+    for (const Closure &closure : shading.scattering()) lobes |= lobes_of(closure);
     return lobes;
 }
 
@@ -131,9 +134,9 @@ std::optional<ScatterSample> sample(const Shading &shading, Lobes lobes, const s
     if (!choice.closure) return {};
     const Closure &closure = *choice.closure;
     const std::optional<ClosureSample> drawn =
-        lobes_of(closure.type) & diffuse_lobes
-            ? sample_diffuse(closure, shading.outgoing, u)
-            : sample_microfacet(closure, lobes, shading.outgoing, {u[0], u[1], choice.left}, transport);
+        lobes_of(closure) & diffuse_lobes ? sample_diffuse(closure, shading.outgoing, u)
+                                          : sample_microfacet(closure, lobes & lobes_of(closure), shading.outgoing,
+                                                              {u[0], u[1], choice.left}, transport);
     if (!drawn) return {};
     const float side = dot(drawn->direction, shading.normal);
     if (drawn->lobe & reflection_lobes ? side <= 0 : side >= 0) return {};

@@ -13,18 +13,23 @@
 
 namespace photon_maps {
 
-/// Ways in which a closure scatters; sets of them are bits. Diffuse ones are carried by the photon maps, glossy ones,
-/// however rough, by the path: camera_pass.h has the table.
+/// Ways in which a closure scatters; sets of them are bits. Diffuse ones are carried by the photon maps, glossy ones by
+/// the path, but that rough ones may ask for caustics, too: camera_path.h has the table.
 enum Lobe : uint32_t {
     diffuse_reflection = 1,
     diffuse_transmission = 2,
     glossy_reflection = 4,
     glossy_transmission = 8,
+    rough_reflection = 16,  ///< glossy, of a roughness of least_rough or more
 };
 using Lobes = uint32_t;
 constexpr Lobes diffuse_lobes = diffuse_reflection | diffuse_transmission;
-constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission;
+constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission | rough_reflection;
+constexpr Lobes reflection_lobes = diffuse_reflection | glossy_reflection | rough_reflection;
 constexpr Lobes all_lobes = diffuse_lobes | glossy_lobes;
+
+/// Roughness from which a lobe is so wide that of the photons around a point enough are within it.
+constexpr float least_rough = 0.25f;
 
 /// What is carried along the path: radiance from the camera, or flux from the lights. Refraction from a medium of index
 /// n1 into one of n2, along the path, scales radiance by (n1 / n2)^2 and leaves flux as it is (Veach 1997,
@@ -89,6 +94,9 @@ struct ScatterSample {
 
 /// Whether a closure scatters evenly.
 bool is_lambertian(const Closure &closure);
+
+/// Returns the lobes that a closure has.
+Lobes lobes_of(const Closure &closure);
 
 /// Returns the lobes that the closures have.
 Lobes lobes_of(const Shading &shading);

@@ -16,8 +16,9 @@ struct Query {
     Vec3 normal;           ///< unit geometric normal, on the side that is seen
     Vec3 shading_normal;   ///< unit; equal to `normal` on a flat-shaded surface, which is faster
     bool is_bent = false;  ///< leaves out photons from below the tangent plane, which tilted places near p receive
-    const Shading *shading = nullptr;  ///< its diffuse reflection weighs every photon: radiance is estimated
+    const Shading *shading = nullptr;  ///< its reflection weighs every photon: radiance is estimated
     bool mean_direction = false;       ///< with a shading: weighs all photons as one from their mean direction
+    Lobes lobes = diffuse_reflection;  ///< with a shading: by which it reflects
 };
 
 struct Estimate {

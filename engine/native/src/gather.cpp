@@ -12,8 +12,17 @@ struct DiscQuery {
     float share;  ///< of the disc that the surface fills
 };
 
-DiscQuery disc_query(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
-    Query query{hit.position, hit.normal, closure_normal, false, shading, shading && gather.mean_direction};
+/// The closures that weigh photons one by one; none where irradiance is asked for.
+struct Weighing {
+    const Shading *shading = nullptr;
+    Lobes lobes = 0;
+};
+
+DiscQuery disc_query(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal,
+                     const Weighing &weighing) {
+    Query query{hit.position,  hit.normal,       closure_normal,
+                false,         weighing.shading, weighing.shading && gather.mean_direction,
+                weighing.lobes};
     Kernel kernel = gather.kernel;
     if (gather.nearest_count > 0) kernel = kernel_of_nearest(*gather.map, query, gather.nearest_count, kernel);
     const Coverage::Disc disc = gather.coverage->disc(hit, kernel.radius);
@@ -22,22 +31,14 @@ DiscQuery disc_query(const PhotonGather &gather, const SurfacePoint &hit, Vec3 c
     return {query, kernel, disc.share};
 }
 
-/// What the estimate asks for: irradiance, or with a shading the radiance that it makes of each photon.
-Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
-    const DiscQuery disc = disc_query(gather, hit, closure_normal, shading);
+/// What the estimate asks for: irradiance, or the radiance that closures make of each photon.
+Estimate estimate_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal,
+                     const Weighing &weighing) {
+    const DiscQuery disc = disc_query(gather, hit, closure_normal, weighing);
     Estimate estimate = estimate_photons(*gather.map, *gather.edges, disc.query, disc.kernel);
     estimate.value = estimate.value / disc.share;
     estimate.density /= disc.share;
     return estimate;
-}
-
-/// The point as it is seen from its other side.
-SurfacePoint turned(const SurfacePoint &hit) {
-    SurfacePoint back = hit;
-    back.normal = -hit.normal;
-    back.shading_normal = -hit.shading_normal;
-    back.is_backfacing = !hit.is_backfacing;
-    return back;
 }
 
 /// The discs of the levels at a point. Where the largest is filled, so are those within it.
@@ -59,25 +60,25 @@ LevelDiscs discs_at(const PhotonGather &gather, const SurfacePoint &hit) {
     return discs;
 }
 
-Levels levels_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Shading *shading) {
+Levels levels_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closure_normal, const Weighing &weighing) {
     const LevelDiscs discs = discs_at(gather, hit);
     const bool is_bent = discs.share[level_count - 1] != 1;
-    const Query query{hit.position, hit.normal, closure_normal, is_bent, shading};
+    const Query query{hit.position, hit.normal, closure_normal, is_bent, weighing.shading, false, weighing.lobes};
     return estimate_levels(*gather.map, *gather.edges, query, gather.kernel, discs);
 }
 
-/// What a surface's diffuse closures ask of the photons. Lambertian ones share one irradiance, as long as they share
-/// their normal.
-struct DiffuseParts {
+/// What a surface's closures ask of the photons. Lambertian ones share one irradiance, as long as they share their
+/// normal.
+struct Parts {
     Vec3 reflected, transmitted, normal, back_normal;
     bool is_simple = true, reflects = false;
 
-    explicit DiffuseParts(const Shading &shading) {
+    Parts(const Shading &shading, Lobes lobes) {
         for (const Closure &closure : shading.scattering()) {
             if (closure.type == ClosureType::translucent) {
                 transmitted += closure.weight;
                 back_normal = -closure.normal;
-            } else if (closure.type == ClosureType::diffuse || closure.type == ClosureType::sheen) {
+            } else if (lobes_of(closure) & lobes) {
                 is_simple = is_simple && is_lambertian(closure) && (!reflects || closure.normal == normal);
                 reflects = true;
                 reflected += closure.weight;
@@ -91,42 +92,42 @@ struct DiffuseParts {
 
 ProbedIrradiance probe_irradiance(const PhotonGather &gather, const SurfacePoint &hit) {
     if (gather.empty()) return {};
-    const DiscQuery disc = disc_query(gather, hit, hit.shading_normal, nullptr);
+    const DiscQuery disc = disc_query(gather, hit, hit.shading_normal, {});
     const Estimate found = estimate_photons(*gather.map, *gather.edges, disc.query, disc.kernel);
     const Vec3 variance = irradiance_variance(*gather.map, *gather.edges, disc.query, disc.kernel);
     return {found.radius, found.photons, found.value / disc.share, variance / (disc.share * disc.share)};
 }
 
-Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading) {
+Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes) {
     Gathered gathered;
     if (gather.empty()) return gathered;
-    const DiffuseParts parts(shading);
+    const Parts parts(shading, lobes);
     if (parts.reflects) {
-        const Estimate estimate =
-            estimate_at(gather, hit, parts.is_simple ? parts.normal : hit.normal, parts.is_simple ? nullptr : &shading);
+        const Weighing weighing = parts.is_simple ? Weighing{} : Weighing{&shading, lobes & reflection_lobes};
+        const Estimate estimate = estimate_at(gather, hit, parts.is_simple ? parts.normal : hit.normal, weighing);
         gathered.radiance += parts.is_simple ? parts.reflected * estimate.value / pi : estimate.value;
         gathered.density += estimate.density;
     }
 
     // Light that lands on the other side and comes through.
     if (max_component(parts.transmitted) > 0) {
-        const Estimate estimate = estimate_at(gather, turned(hit), parts.back_normal, nullptr);
+        const Estimate estimate = estimate_at(gather, hit.turned(), parts.back_normal, {});
         gathered.radiance += parts.transmitted * estimate.value / pi;
         gathered.density += estimate.density;
     }
     return gathered;
 }
 
-Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading) {
+Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes) {
     Levels gathered;
     if (gather.empty()) return gathered;
-    const DiffuseParts parts(shading);
+    const Parts parts(shading, lobes);
     if (parts.reflects && parts.is_simple)
-        gathered += parts.reflected / pi * levels_at(gather, hit, parts.normal, nullptr);
+        gathered += parts.reflected / pi * levels_at(gather, hit, parts.normal, {});
     else if (parts.reflects)
-        gathered += levels_at(gather, hit, hit.normal, &shading);
+        gathered += levels_at(gather, hit, hit.normal, {&shading, lobes & reflection_lobes});
     if (max_component(parts.transmitted) > 0)
-        gathered += parts.transmitted / pi * levels_at(gather, turned(hit), parts.back_normal, nullptr);
+        gathered += parts.transmitted / pi * levels_at(gather, hit.turned(), parts.back_normal, {});
     return gathered;
 }
 

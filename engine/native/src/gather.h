@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiance that a surface's diffuse closures make of the photons around a point.
+// Radiance that a surface makes of the photons around a point.
 #pragma once
 
 #include "closure.h"
@@ -37,8 +37,9 @@ struct ProbedIrradiance {
 ProbedIrradiance probe_irradiance(const PhotonGather &gather, const SurfacePoint &hit);
 
 /// Gathers the photons on the side that is seen and, for what shines through, on the other side.
-Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading);
+/// @param lobes that show them: diffuse_lobes, with or without rough_reflection
+Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes);
 /// The same by the eight radii of which the kernel's is the largest. Every photon is weighed by itself.
-Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading);
+Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes);
 
 }  // namespace photon_maps

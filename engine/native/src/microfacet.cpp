@@ -21,7 +21,7 @@ float refraction_scale(const Closure &closure, Transport transport) {
 
 /// Probability of sampling reflection at a facet.
 float reflection_probability(const FacetShares &shares, Lobes lobes) {
-    const float reflected = lobes & glossy_reflection ? average(shares.reflectance) : 0.0f;
+    const float reflected = lobes & reflection_lobes ? average(shares.reflectance) : 0.0f;
     const float transmitted = lobes & glossy_transmission ? average(shares.transmittance) : 0.0f;
     return reflected > 0 ? reflected / (reflected + transmitted) : 0.0f;
 }
@@ -65,7 +65,8 @@ FacetShares facet_shares(const Closure &closure, float cosine) {
 Scattering scatter_microfacet(const Closure &closure, Lobes lobes, Vec3 outgoing, Vec3 incoming, Transport transport) {
     const float leaving = dot(closure.normal, outgoing), arriving = dot(closure.normal, incoming);
     const bool is_reflection = arriving > 0;
-    if (leaving <= 0 || is_smooth(closure) || !(lobes & (is_reflection ? glossy_reflection : glossy_transmission)))
+    if (leaving <= 0 || is_smooth(closure) ||
+        !(lobes & (is_reflection ? reflection_lobes : Lobes{glossy_transmission})))
         return {};
     if (!is_reflection && has_singular_refraction(closure)) return {};
     const std::optional<Facet> facet = facet_between(closure, outgoing, incoming, is_reflection);
@@ -100,8 +101,8 @@ std::optional<ClosureSample> sample_microfacet(const Closure &closure, Lobes lob
     if (u[2] < probability) {
         const Vec3 direction = half * (2 * cosine) - outgoing;
         if (dot(direction, closure.normal) <= 0) return {};
-        return ClosureSample{direction, glossy_reflection, is_smooth(closure),
-                             closure.weight * shares.reflectance / probability};
+        const Lobe lobe = lobes & rough_reflection ? rough_reflection : glossy_reflection;
+        return ClosureSample{direction, lobe, is_smooth(closure), closure.weight * shares.reflectance / probability};
     }
     if (!(lobes & glossy_transmission) || max_component(shares.transmittance) <= 0) return {};
     const Vec3 direction = normalize(refract(outgoing, half, cosine, shares.cosine_behind, closure.eta));

@@ -21,7 +21,7 @@ struct FacetShares {
 /// @param cosine between the light and the facet's normal
 FacetShares facet_shares(const Closure &closure, float cosine);
 
-/// @param lobes those of the closure's lobes that may be sampled
+/// @param lobes those of the closure's own lobes that are asked for
 Scattering scatter_microfacet(const Closure &closure, Lobes lobes, Vec3 outgoing, Vec3 incoming, Transport transport);
 
 /// @return nothing where facets let nothing through or scatter to the wrong side of the closure's normal

@@ -33,24 +33,22 @@ void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, 
                                            receiver(shading), {u[0], u[1], choice.left});
     if (!light) return;
     const bool transmits = dot(light->direction, hit.normal) < 0;
-    std::array<Vec3, 2> scattered;
-    const std::array<Lobes, 2> parts = {diffuse_lobes, glossy_lobes};
-    for (size_t part = 0; part < 2; ++part) {
-        const Lobe lobe = part == 0 ? (transmits ? diffuse_transmission : diffuse_reflection)
-                                    : (transmits ? glossy_transmission : glossy_reflection);
-        if (!(light->visibility & visible_kind(lobe)) || is_gathered(word_.then(parts[part]))) continue;
-        scattered[part] = evaluate(shading, parts[part], light->direction, transport(hit));
+    std::array<Vec3, 3> scattered;
+    for (const Part part : {diffuse_part, rough_part, glossy_part}) {
+        const Lobe lobe = part == diffuse_part ? (transmits ? diffuse_transmission : diffuse_reflection)
+                                               : (transmits ? glossy_transmission : glossy_reflection);
+        if (!parts_[part] || !(light->visibility & visible_kind(lobe)) || is_gathered(word_.then(part))) continue;
+        scattered[part] = evaluate(shading, parts_[part], light->direction, transport(hit));
         if (max_component(scattered[part]) <= 0) continue;
-        const float other = light->pdf > 0 ? other_pdf(shading, part == 1 && splits_ ? lobe : parts[part],
-                                                       choice.source, light->direction)
-                                           : 0;
+        const float other = light->pdf > 0 ? other_pdf(shading, part, transmits, choice.source, light->direction) : 0;
         const float mis = other > 0 ? power_heuristic(light->pdf * choice.probability, other) : 1;
         scattered[part] = scattered[part] * (share * mis / choice.probability);
     }
-    if (max_component(scattered[0] + scattered[1]) <= 0) return;
+    if (max_component(scattered[diffuse_part] + scattered[rough_part] + scattered[glossy_part]) <= 0) return;
     const Ray shadow{hit.origin_towards(light->direction), light->direction, 0, light->distance};
     const Vec3 arriving = throughput_ * light->radiance * transmittance(shadow, hit, choice.source);
-    for (size_t part = 0; part < 2; ++part) word_.then(parts[part]).buffer(sample_) += scattered[part] * arriving;
+    for (const Part part : {diffuse_part, rough_part, glossy_part})
+        word_.then(part).buffer(sample_) += scattered[part] * arriving;
 }
 
 /// The share of a light's radiance that comes through to a point; without a ray where shadow photons tell.
@@ -67,17 +65,22 @@ RayState CameraPath::receiver(const Shading &shading) const {
     RayState state = state_;
     state.kinds = 0;
     ++state.depth;
-    for (const Lobe lobe : {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission})
+    for (const Lobe lobe :
+         {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission, rough_reflection})
         if (lobes_of(shading) & lobe) state.kinds |= ray_kinds(lobe);
     return state;
 }
 
-/// Density with which a ray by these lobes will go in a direction to meet a source.
-float CameraPath::other_pdf(const Shading &shading, Lobes lobes, size_t source, Vec3 direction) const {
-    float probability = lobes & glossy_lobes ? go_glossy_ : go_diffuse_;
-    if (asks_emitters() && lobes == diffuse_lobes) probability = source == pass_.lights.triangles_source() ? 1 : 0;
-    if (guide_ && lobes == diffuse_lobes) return probability * pdf_guided(*guide_, shading, direction);
-    return probability > 0 ? probability * pdf(shading, lobes, direction) : 0;
+/// Density with which a ray by a part will go in a direction to meet a source.
+/// @param transmits whether the direction is behind the surface
+float CameraPath::other_pdf(const Shading &shading, Part part, bool transmits, size_t source, Vec3 direction) const {
+    float probability = go_on_[part];
+    if (asks_emitters() && part == diffuse_part) probability = source == pass_.lights.triangles_source() ? 1 : 0;
+    if (guide_ && part == diffuse_part) return probability * pdf_guided(*guide_, shading, direction);
+    if (!(probability > 0)) return 0;
+    Lobes lobes = parts_[part];
+    if (part == glossy_part && splits_) lobes &= transmits ? transmissive_lobes : reflection_lobes;
+    return probability * pdf(shading, lobes, direction);
 }
 
 /// A ray by the diffuse closures that counts only if it meets an emissive surface: photons bring the rest.
@@ -100,7 +103,7 @@ void CameraPath::meet_emitters(const SurfacePoint &hit, const Shading &shading) 
             const size_t source = pass_.lights.triangles_source();
             const float choice = asks_every_source() ? 1 : pass_.lights.choice_probability(source, hit.position);
             const float light_pdf = choice * pass_.lights.triangle_pdf(hit.position, next);
-            word_.then(diffuse_lobes).buffer(sample_) +=
+            word_.then(diffuse_part).buffer(sample_) +=
                 reached * there.emission * power_heuristic(drawn->pdf, light_pdf);
         }
         reached *= there.transparency;

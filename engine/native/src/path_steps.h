@@ -53,18 +53,18 @@ class CameraPath {
                        const std::array<float, 4> &u, float share);
     Vec3 transmittance(const Ray &shadow, const SurfacePoint &hit, size_t source);
     RayState receiver(const Shading &shading) const;
-    float other_pdf(const Shading &shading, Lobes lobes, size_t source, Vec3 direction) const;
+    float other_pdf(const Shading &shading, Part part, bool transmits, size_t source, Vec3 direction) const;
     void meet_emitters(const SurfacePoint &hit, const Shading &shading);
     void gather(const SurfacePoint &hit, const Shading &shading);
     void gather_all(const SurfacePoint &hit, const Shading &shading);
-    void add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes last);
-    void add_caustic_levels(const SurfacePoint &hit, const Shading &shading);
+    void add_photons(const PhotonGather &map, const SurfacePoint &hit, const Shading &shading, Lobes lobes, Part last);
+    void add_caustic_levels(const SurfacePoint &hit, const Shading &shading, Lobes lobes);
     void plan(const SurfacePoint &hit, const Shading &shading);
     std::optional<ScatterSample> draw(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
                                       const std::array<float, 3> &u) const;
     bool go_on(const SurfacePoint &hit, const Shading &shading);
     bool pass_straight(const SurfacePoint &hit, const Shading &shading, float u);
-    bool scatter(const SurfacePoint &hit, const Shading &shading, Lobes lobes, float chosen,
+    bool scatter(const SurfacePoint &hit, const Shading &shading, Part part, Lobes lobes,
                  const std::array<float, 4> &u);
     bool survives(Vec3 weight, float u);
     Transport transport(const SurfacePoint &hit) const {
@@ -72,9 +72,12 @@ class CameraPath {
         return pass_.scene.mesh_of(hit).is_closed && !began_inside ? Transport::radiance : Transport::flux;
     }
 
-    /// Whether photons carry the light that arrives by a word: at a diffuse surface met before they were asked for what
-    /// came there by glossy scatterings.
-    bool is_gathered(const Word &word) const { return pass_.maps && word.diffuse > 0 && word.ends_glossy; }
+    /// Whether photons carry the light that arrives by a word: at a surface met before they were asked for what came
+    /// there by glossy scatterings.
+    bool is_gathered(const Word &word) const {
+        if (word.diffuse == 0) return pass_.gathers_rough && word.is_focused;
+        return pass_.maps && word.ends_glossy;
+    }
     /// Whether a final gather ends here, where the eye sees no detail: all light is asked of the photons. A ray shorter
     /// than their radius goes on, for it would show how they are blurred (Jensen 1996, section 5).
     bool ends_final_gather() const {
@@ -109,9 +112,11 @@ class CameraPath {
     Origin origin_;
     bool is_described_ = false;
     float first_depth_ = 0;  ///< of the transparent surfaces passed so far, along the camera's ray
-    /// Probabilities of the three ways to go on from the present vertex, and where to if diffusely.
-    float go_diffuse_ = 0, go_glossy_ = 0, go_straight_ = 0;
-    bool splits_ = false;  ///< there: what goes on by glossy lobes goes on by reflection and by refraction
+    /// Probabilities of the ways to go on from the present vertex, and where to if diffusely.
+    float go_straight_ = 0;
+    std::array<float, 3> go_on_{};  ///< by Part
+    std::array<Lobes, 3> parts_{};  ///< parts_of() the surface there
+    bool splits_ = false;           ///< there: what goes on by glossy lobes goes on by reflection and by refraction
     std::optional<Guide> guide_;
 };
 

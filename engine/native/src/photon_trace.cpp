@@ -149,7 +149,7 @@ class PhotonPath {
         } else {
             // As camera_path.h has it: at a sheet that encloses nothing flux is scaled in the place of radiance.
             const bool is_body = scene_.mesh_of(hit).is_closed;
-            drawn = draw(shading, lobes, {u[0], u[1], u[2]}, is_body ? Transport::flux : Transport::radiance);
+            drawn = draw(hit, shading, lobes, {u[0], u[1], u[2]}, is_body ? Transport::flux : Transport::radiance);
             if (!drawn) return end(before, {});
             flux_ *= drawn->weight * (normal_correction(hit, ray_.direction, drawn->direction) / (1 - go_straight));
             if (state_.depth == tracing_.max_bounces) {
@@ -177,15 +177,36 @@ class PhotonPath {
 
     /// Draws by diffuse or by glossy closures alone where that decides which map the photon is for: a direction that
     /// either may send it in would bring the light of both to one map.
-    std::optional<ScatterSample> draw(const Shading &shading, Lobes lobes, std::array<float, 3> u,
-                                      Transport transport) const {
-        if (was_diffuse_) return sample(shading, lobes, u, transport);
+    std::optional<ScatterSample> draw(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
+                                      std::array<float, 3> u, Transport transport) const {
+        if (was_diffuse_) return draw_adjoint(hit, shading, lobes, u, transport);
         const float diffuse = average(albedo(shading, lobes & diffuse_lobes)) / average(albedo(shading, lobes));
         const bool is_diffuse = u[2] < diffuse;
         const float share = is_diffuse ? diffuse : 1 - diffuse;
         u[2] = std::min((is_diffuse ? u[2] : u[2] - diffuse) / share, 1 - std::numeric_limits<float>::epsilon() / 2);
-        auto drawn = sample(shading, lobes & (is_diffuse ? diffuse_lobes : glossy_lobes), u, transport);
+        auto drawn = draw_adjoint(hit, shading, lobes & (is_diffuse ? diffuse_lobes : glossy_lobes), u, transport);
         if (drawn) drawn->weight = drawn->weight / share;
+        return drawn;
+    }
+
+    /// Draws a direction as the closures have it, and weighs it as a path from the camera would that came from there:
+    /// what is scattered from one direction to another may depend on which of them it is seen from, and a picture is
+    /// what the camera sees (Veach 1997, section 5.3: the adjoint of a BSDF that is not symmetric).
+    std::optional<ScatterSample> draw_adjoint(const SurfacePoint &hit, const Shading &shading, Lobes lobes,
+                                              const std::array<float, 3> &u, Transport transport) const {
+        auto drawn = sample(shading, lobes, u, transport);
+        if (!drawn || drawn->is_singular || hit.material->traits.is_reciprocal) return drawn;
+        const Vec3 from = -ray_.direction, to = drawn->direction;
+        const bool transmits = (drawn->lobe & transmissive_lobes) != 0;
+        const SurfacePoint seen = transmits ? hit.turned() : hit;
+        const float arriving = dot(from, hit.shading_normal), leaving = dot(to, seen.shading_normal);
+        if (!(arriving > 0 && leaving > 0)) return drawn;  // before one surface and behind the other
+        const Transport back = transport == Transport::flux ? Transport::radiance : Transport::flux;
+        const Vec3 here = evaluate(shading, lobes, to, transport) / leaving;
+        const Vec3 there = evaluate(shade(scene_, seen, to, state_), lobes, from, back) / arriving;
+        // Bounded as shading_ratio is.
+        const auto ratio = [](float a, float b) { return b > 0 ? std::min(a / b, max_shading_ratio) : 1.0f; };
+        drawn->weight *= {ratio(there.x, here.x), ratio(there.y, here.y), ratio(there.z, here.z)};
         return drawn;
     }
 

@@ -70,7 +70,7 @@ Lobes lobes_of(const KnownArguments &a) {
         case PM_OP_CONDUCTOR:
             return glossy_reflection;
         case PM_OP_GLASS:
-            return glossy_lobes;
+            return glossy_reflection | glossy_transmission;
         case PM_OP_REFRACTION:
             return glossy_transmission;
         case PM_OP_PRINCIPLED:
@@ -117,10 +117,33 @@ bool is_constant(const KnownArguments &a) {
     return !emits(a) || (a.is_constant(PM_PRINCIPLED_EMISSION) && !is_covered);
 }
 
+/// Whether light goes as well one way as back. Layers take from those below by the side they are seen from, and so does
+/// what rough closures add for light that they scatter several times; bumps turn the cosine of one direction alone.
+bool is_reciprocal(const pm_instruction &instruction) {
+    switch (instruction.op) {
+        case PM_OP_INPUT:
+            return instruction.option != PM_INPUT_INCOMING && instruction.option != PM_INPUT_REFLECTION;
+        case PM_OP_FRESNEL:
+        case PM_OP_LAYER_WEIGHT:
+        case PM_OP_NORMAL_MAP:
+        case PM_OP_BUMP:
+        case PM_OP_SHEEN:
+        case PM_OP_GLOSSY:
+        case PM_OP_METALLIC:
+        case PM_OP_CONDUCTOR:
+        case PM_OP_GLASS:
+        case PM_OP_PRINCIPLED:
+            return false;
+        default:
+            return true;
+    }
+}
+
 MaterialTraits traits_of(const Program &program) {
     MaterialTraits traits;
     traits.is_constant = true;
     for (const pm_instruction &instruction : program.instructions) {
+        traits.is_reciprocal &= is_reciprocal(instruction);
         if (!is_closure(instruction.op)) continue;
         const KnownArguments arguments{program, instruction};
         traits.emits |= emits(arguments);

@@ -37,9 +37,10 @@ struct MaterialTraits {
     bool emits = false;           ///< may emit
     bool is_transparent = false;  ///< may let light straight through, or be a hole
     bool may_scatter = true;
-    Lobes lobes = 0;           ///< that it may have
-    float specular = 0;        ///< about which share of light its glossy lobes scatter, 0 to 1
-    bool is_constant = false;  ///< emission and transparency are the same at all points and for all rays
+    Lobes lobes = 0;            ///< that it may have; glossy_reflection stands for rough ones, too
+    float specular = 0;         ///< about which share of light its glossy lobes scatter, 0 to 1
+    bool is_constant = false;   ///< emission and transparency are the same at all points and for all rays
+    bool is_reciprocal = true;  ///< scatters as much from one direction to another as from that to the first
 };
 
 struct Material {

@@ -19,7 +19,8 @@ constexpr uint32_t visible_kind(Lobe lobe) {
 /// The lobes whose rays meet what has the given visibility.
 constexpr Lobes lobes_that_see(uint32_t visibility) {
     Lobes lobes = 0;
-    for (const Lobe lobe : {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission})
+    for (const Lobe lobe :
+         {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission, rough_reflection})
         if (visibility & visible_kind(lobe)) lobes |= lobe;
     return lobes;
 }
@@ -34,7 +35,7 @@ inline RayState scattered(const RayState &state, const ScatterSample &sample) {
     RayState next = state;
     next.kinds = ray_kinds(sample.lobe);
     next.is_singular = sample.is_singular;
-    next.is_reflection = (sample.lobe & (diffuse_reflection | glossy_reflection)) != 0;
+    next.is_reflection = (sample.lobe & reflection_lobes) != 0;
     ++next.depth;
     if (next.kinds & 1u << PM_RAY_DIFFUSE) ++next.diffuse_depth;
     if (next.kinds & 1u << PM_RAY_GLOSSY) ++next.glossy_depth;

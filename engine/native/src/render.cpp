@@ -79,6 +79,16 @@ bool Render::is_nested() const {
     return settings_.is_nested && settings_.integrator == Integrator::photon_map && traces(PhotonPurpose::caustic);
 }
 
+/// Whether photons bring caustics to rough reflections. They are kept where a diffuse ray would have come from: a
+/// glossy one must see the same.
+bool Render::gathers_rough() const {
+    constexpr uint32_t both = 1u << PM_RAY_DIFFUSE | 1u << PM_RAY_GLOSSY;
+    return traces(PhotonPurpose::caustic) && first_radii_->caustic > 0 && !settings_.mean_direction &&
+           std::ranges::all_of(scene_.instances, [](const Instance &instance) {
+               return (instance.visibility & both) == 0 || (instance.visibility & both) == both;
+           });
+}
+
 /// Whether photons tell camera paths where to go on diffusely.
 bool Render::is_guided() const {
     const bool goes_on = settings_.integrator == Integrator::path_tracing ||
@@ -252,6 +262,7 @@ CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const Pho
             maps.importance ? &*maps.importance : nullptr,
             maps.shadow_photons ? &*maps.shadow_photons : nullptr,
             indirect,
+            has_maps && gathers_rough(),
             settings_.max_bounces,
             light_samples_,
             hash(settings_.seed, camera_stream),

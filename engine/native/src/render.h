@@ -113,6 +113,7 @@ class Render {
     bool traces(PhotonPurpose purpose) const;
     bool is_nested() const;
     bool is_guided() const;
+    bool gathers_rough() const;
     bool marks_shadows() const;
     PhotonTracing tracing(PhotonPurpose purpose, uint32_t index) const;
     std::vector<PhotonTracing> tracings(uint32_t index) const;

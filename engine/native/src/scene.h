@@ -99,6 +99,15 @@ struct SurfacePoint {
     Vec3 origin_towards(Vec3 direction) const {
         return position + normal * std::copysign(error, dot(direction, normal));
     }
+
+    /// The point as it is seen from its other side.
+    SurfacePoint turned() const {
+        SurfacePoint back = *this;
+        back.normal = -normal;
+        back.shading_normal = -shading_normal;
+        back.is_backfacing = !is_backfacing;
+        return back;
+    }
 };
 
 /// The triangle that an instance shows, in world space.

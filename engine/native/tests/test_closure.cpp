@@ -89,7 +89,7 @@ Mean mean_weight(const Shading &shading, Lobes lobes, Transport transport, int c
     for (int i = 0; i < count; ++i) {
         const std::optional<ScatterSample> drawn = sample(shading, lobes, random(), transport);
         if (!drawn) continue;
-        const bool reflects = drawn->lobe == diffuse_reflection || drawn->lobe == glossy_reflection;
+        const bool reflects = (drawn->lobe & reflection_lobes) != 0;
         mean.usable &= is_finite(drawn->weight) && is_finite(drawn->direction) && std::isfinite(drawn->pdf) &&
                        std::abs(length(drawn->direction) - 1) < 1e-3f && (drawn->lobe & lobes) != 0 &&
                        (dot(drawn->direction, shading.normal) > 0) == reflects &&
@@ -189,7 +189,8 @@ void check_all_sampling(Checks &checks) {
     // Single lobes, and normals that are not the surface's.
     for (const Named &closure : all_closures(orange, false)) {
         const Shading shading = seen(closure, 0.5f, direction(50), true);
-        for (const Lobes lobes : {Lobes{glossy_reflection}, Lobes{glossy_transmission}, diffuse_lobes})
+        for (const Lobes lobes :
+             {Lobes{glossy_reflection}, Lobes{rough_reflection}, Lobes{glossy_transmission}, diffuse_lobes})
             if (lobes_of(shading) & lobes)
                 check_sampling(checks, shading, lobes, Transport::radiance, closure.name + ", some lobes");
         for (const Vec3 normal : {direction(35, 60), -direction(60, 180)})

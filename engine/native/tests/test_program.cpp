@@ -237,8 +237,11 @@ void test_traits(Checks &checks) {
     const Vec3 one{1, 1, 1}, half{0.5f, 0.5f, 0.5f};
     checks.that(traits_of(PM_OP_DIFFUSE, {half, {}}).lobes == diffuse_reflection, "diffuse");
     checks.that(traits_of(PM_OP_TRANSLUCENT, {half}).lobes == diffuse_transmission, "translucent");
+    checks.that(traits_of(PM_OP_DIFFUSE, {half, {}}).is_reciprocal, "Lambert's law is the same both ways");
+    checks.that(!traits_of(PM_OP_SHEEN, {half, half}).is_reciprocal, "sheen depends on the side it is seen from");
     const MaterialTraits glass = traits_of(PM_OP_GLASS, {one, one, {}, one * 1.5f});
-    checks.that(glass.lobes == glossy_lobes && glass.specular == 1 && glass.may_scatter, "glass");
+    checks.that(glass.lobes == (glossy_reflection | glossy_transmission) && glass.specular == 1 && glass.may_scatter,
+                "glass");
 
     // Principled's defaults, in the order of pm_principled.
     Builder b;
@@ -254,6 +257,7 @@ void test_traits(Checks &checks) {
     const Stage principled(std::move(b));
     const MaterialTraits traits = principled.material().traits;
     checks.that(traits.lobes == (diffuse_reflection | glossy_reflection), "principled's lobes");
+    checks.that(!traits.is_reciprocal, "what is below a layer depends on the side it is seen from");
     checks.near(traits.specular, 0.04, 1e-3, "principled's sheen of light");
     checks.that(!traits.emits && !traits.is_transparent && traits.is_constant,
                 "principled neither shines nor is clear");

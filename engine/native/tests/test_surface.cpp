@@ -42,6 +42,32 @@ void check_lambert(Checks &checks) {
     checks.that(lobes_of(shading) == diffuse_reflection, "Lambert: its lobe");
 }
 
+void check_rough_lobes(Checks &checks) {
+    const auto lobes_at = [](float roughness, auto add) {
+        Shading shading = seen(towards(0.3f));
+        add(shading, roughness);
+        return lobes_of(shading);
+    };
+    const auto glossy = [](Shading &shading, float roughness) { add_glossy(shading, white, roughness, up, true); };
+    const auto glass = [](Shading &shading, float roughness) {
+        add_glass(shading, white, white, roughness, 1.5f, up, true);
+    };
+    checks.that(lobes_at(0.2f, glossy) == glossy_reflection, "a narrow reflection");
+    checks.that(lobes_at(0.25f, glossy) == rough_reflection, "a rough reflection");
+    checks.that(lobes_at(0.9f, glass) == (glossy_reflection | glossy_transmission), "glass is never rough in that way");
+
+    Shading coated = seen(towards(0.3f));
+    add_glossy(coated, white * 0.5f, 0.1f, up, true);
+    add_glossy(coated, orange * 0.5f, 0.5f, up, true);
+    const Vec3 incoming = towards(0.6f);
+    check_color(checks,
+                evaluate(coated, glossy_reflection, incoming, Transport::radiance) +
+                    evaluate(coated, rough_reflection, incoming, Transport::radiance),
+                evaluate(coated, glossy_lobes, incoming, Transport::radiance), 1e-6f, "both are the whole");
+    const auto drawn = sample(coated, rough_reflection, middle, Transport::radiance);
+    checks.that(drawn && drawn->lobe == rough_reflection, "a sample of the rough one alone");
+}
+
 void check_metals(Checks &checks) {
     const Vec3 tint{0.6f, 0.9f, 0.3f};
     Shading head_on = seen(up), grazing = seen(towards(1.0f / 7));
@@ -214,6 +240,7 @@ void check_unfit_input(Checks &checks) {
 int main() {
     Checks checks;
     check_lambert(checks);
+    check_rough_lobes(checks);
     check_metals(checks);
     check_smooth_glass(checks);
     check_bump_shadowing(checks);
