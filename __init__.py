@@ -13,6 +13,7 @@ from .ui import (
     overlay_panels,
     panels,
     photon_overlay,
+    preload,
     refresh,
     view_panels,
 )
@@ -27,7 +28,7 @@ MODULES = (
     *(preferences, properties, overlay_properties, migration, render_engine),
     *(add_demo, chart, denoising, messages, presets, search_disc),
     *(panels, messages_panel, chart_panel, data_panels, overlay_panels, view_panels, compatibility),
-    *(photon_overlay, refresh),
+    *(photon_overlay, refresh, preload),
 )
 
 

@@ -149,7 +149,8 @@ class PhotonMapsSceneSettings(bpy.types.PropertyGroup):
     use_caustics: BoolProperty(
         name="Caustics",
         description="Trace photons for light that glass, metal and gloss throw onto rough surfaces. Off is faster "
-        "where there are such objects, and leaves that light out; of plastics it is faint",
+        "where there are such objects, and leaves that light out but for its noisy reflection in gloss; of plastics "
+        "it is faint",
         default=_DEFAULTS.use_caustics,
     )
     use_indirect: BoolProperty(
@@ -263,8 +264,8 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
     )
     use_pass_specular: BoolProperty(
         name="Specular",
-        description="Of the indirect light what is seen in mirrors, glossy surfaces and glass. Costs memory, hardly "
-        "any time",
+        description="Of the indirect light what is seen in mirrors, glossy surfaces and glass, but for caustics in "
+        "rough gloss. Costs memory, hardly any time",
     )
     use_pass_soft_indirect: BoolProperty(
         name="Soft Indirect",
@@ -272,7 +273,8 @@ class PhotonMapsViewLayerSettings(bpy.types.PropertyGroup):
     )
     use_pass_caustic: BoolProperty(
         name="Caustic",
-        description="Light that glass and metal throw onto rough surfaces. Costs memory, hardly any time",
+        description="Light that glass and metal throw onto rough surfaces, as these scatter it and as their gloss "
+        "reflects it. Costs memory, hardly any time",
     )
     use_pass_error: BoolProperty(
         name="Error",

@@ -39,7 +39,7 @@ ESTIMATES = _items(
         Estimate.NEAREST: (
             "Nearest",
             "The nearest ones, as many as Nearest Photons says, within the radius at most. Sharper where photons are "
-            "dense and smoother where they are sparse, but 3 to 17 times slower to the same error; pays for sharp "
+            "dense and smoother where they are sparse, but 3 to 19 times slower to the same error; pays for sharp "
             "caustics in few passes",
         ),
         Estimate.ADAPTIVE: (

@@ -11,7 +11,7 @@ from engine.passes import Pass
 from engine.settings import Integrator
 from tests.reference_scenes import CAUSTIC
 from tests.shapes import IDENTITY, Picture, box, box_filtered, camera, lamp, quad, scene, sphere
-from tests.surfaces import glass, material, mirror, mixed
+from tests.surfaces import glass, material, mirror, mixed, principled
 
 TERMS = (Pass.EMISSION, Pass.BACKGROUND, Pass.DIRECT, Pass.SPECULAR, Pass.SOFT_INDIRECT, Pass.CAUSTIC)
 METHODS = {
@@ -33,7 +33,7 @@ def shifted(x: float, y: float, z: float) -> np.ndarray:
 
 
 def still_life(resolution: tuple[int, int] = (32, 32)) -> SceneData:
-    """Glass, a mirror, something glossy and a shining box on a diffuse floor, under a lamp and a sky."""
+    """Glass, a mirror, something glossy and a shining box on a plastic floor, under a lamp and a sky."""
     meshes = [
         quad((0, 0, 0), (3, 0, 0), (0, 3, 0)),
         quad((0, 2, 1.5), (2, 0, 0), (0, 0, 1.5)),
@@ -42,7 +42,7 @@ def still_life(resolution: tuple[int, int] = (32, 32)) -> SceneData:
         box((0.2, 0.8, 0), (0.7, 1.3, 1.0)),
     ]
     materials = [
-        GREY,
+        material(principled(base_color=(0.6,) * 3, roughness=0.4)),
         material(mirror((0.9, 0.8, 0.7))),
         material(glass()),
         material(mixed(0.5, mirror(roughness=0.5), glass(roughness=0.3))),

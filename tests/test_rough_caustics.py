@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Material, Ray, SceneData
+from photon_maps_native.shader import Input
 
 from engine.passes import Pass
 from engine.settings import BrdfDirection, Estimate, Integrator
 from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene
-from tests.surfaces import material, mirror, principled
+from tests.surfaces import glass, material, mirror, mixed, principled, transparent
 
 ALBEDO, SHARE = 0.3, 0.9
 PHOTONS = {"photon_count": 1 << 15, "light_samples": 1}
@@ -63,7 +64,7 @@ def test_a_lobe_that_photons_would_miss_is_left_to_the_path() -> None:
     assert Picture(by_image, box_filtered(**PHOTONS)).run(8).pixels(Pass.CAUSTIC).max() == 0
 
 
-def coated_room(floor: Material, shield: Ray = Ray.ALL) -> SceneData:
+def coated_room(floor: Material, seen_by: Ray = Ray.ALL) -> SceneData:
     """A room with a glossy floor, a glossy box and a mirror under a lamp so wide that paths find its reflections."""
     meshes = [
         quad((0, 0, -1), (1, 0, 0), (0, 1, 0)),
@@ -75,12 +76,13 @@ def coated_room(floor: Material, shield: Ray = Ray.ALL) -> SceneData:
     light = lamp(LightType.RECTANGLE, (0, 0, 0.9), (0, 0, -1), 10.0, size=(1.2, 1.2), visibility=Ray.ALL)
     view = camera((-0.3, -0.9, 0.2), (0.1, 0.5, -0.9), (16, 16), half_angle=0.8)
     data = scene(meshes, view, materials, [light])
-    visibility = np.array([Ray.ALL, Ray.ALL, shield, Ray.ALL], np.uint32)
+    visibility = np.array([Ray.ALL, Ray.ALL, seen_by, Ray.ALL], np.uint32)
     return replace(data, instances=replace(data.instances, visibility=visibility))
 
 
 METHODS = {
     "adaptive": {"estimate": Estimate.ADAPTIVE},
+    "one radius": {"estimate": Estimate.RADIUS},
     "final gather": {"use_final_gather": True},
 }
 ROOMS = {
@@ -127,3 +129,30 @@ def test_photons_that_are_seen_as_one_are_not_asked_by_gloss(room: tuple[SceneDa
     data, paths = room
     settings = box_filtered(max_bounces=8, **PHOTONS, brdf_direction=BrdfDirection.MEAN)
     check_once(paths, Picture(data, settings).run(128))
+
+
+def test_without_caustics_gloss_shows_reflections() -> None:
+    """As any gloss does: the term of caustics is empty, and what they would be in gloss is in the other one."""
+    with_them, without = (
+        Picture(ROOMS["plastic"], box_filtered(max_bounces=8, **PHOTONS, use_caustics=each)).run(64)
+        for each in (True, False)
+    )
+    regular = Picture(ROOMS["plastic"], box_filtered(integrator=Integrator.REGULAR_SHADING)).run(1)
+    assert with_them.pixels(Pass.CAUSTIC).any()
+    assert not without.pixels(Pass.CAUSTIC).any()
+    assert not regular.pixels(Pass.CAUSTIC).any()
+    assert without.pixels(Pass.SPECULAR).mean() > 1.05 * with_them.pixels(Pass.SPECULAR).mean()
+
+
+def test_gloss_reflects_glass_that_photons_do_not_meet() -> None:
+    """Glass mixed with Transparent by Is Shadow Ray: photons pass it straight, what gloss sees in it is the path's."""
+    pane = material(mixed(Input.IS_SHADOW_RAY, glass(1.5), transparent()))
+    meshes = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), box((-1, 0.5, 0.1), (1, 0.6, 1.1))]
+    light = lamp(LightType.RECTANGLE, (0, 2.5, 1.0), (0, 0, 0.3), 50.0, size=(1.5, 1.5), visibility=Ray.ALL)
+    black = material(principled(base_color=(0.001,) * 3, roughness=0.3))  # diffuse, but by next to nothing
+    data = scene(meshes, camera((0, -2, 1), (0, 0, 0), (16, 16), half_angle=0.3), [black, pane], [light])
+    found, paths = (
+        Picture(data, box_filtered(integrator=each, max_bounces=8, **PHOTONS)).run(256).pixels().mean()
+        for each in (Integrator.PHOTON_MAP, Integrator.PATH_TRACING)
+    )
+    assert found == pytest.approx(paths, rel=0.02)

@@ -42,6 +42,7 @@ struct CameraPass {
     const ShadowPhotons *shadow_photons;  ///< null: all shadow rays are traced
     Indirect indirect;
     bool gathers_rough;  ///< the caustic map is asked by rough reflections, too
+    bool has_caustics;   ///< what rough reflections show of caustics is told from other reflections
     uint32_t max_bounces;
     uint32_t light_samples;  ///< of each source, or choices among many, at the first diffuse vertices
     uint32_t seed;

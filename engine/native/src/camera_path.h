@@ -3,17 +3,17 @@
 //
 // Each closure is diffuse (D) or glossy (S, specular however rough); what a surface scatters is the sum of both, so
 // each path of light is exactly one word, and one row of this table carries it (Heckbert 1990; * any number, + at least
-// one). R is a rough reflection, a glossy one, of a surface that is diffuse, too: most things that are not metal or
-// glass:
+// one). R is an S that is a rough reflection by a surface that is diffuse, too, as are most things that are not metal
+// or glass:
 //
 //   from light to eye       photon map                             path tracing
 //   L E                     the ray meets the light                the same
-//   L S* S E                the path goes on until it meets the    the same
-//                           light, and at its vertices samples
+//   L S* S E but for the    the path goes on until it meets the    the same
+//     next row              light, and at its vertices samples
 //                           the lights (multiple importance)
 //   L S+ R S* E             caustic map, at the first R from       the path goes on
-//                           the eye: a lamp's image in glass is
-//                           met by chance from there
+//                           the eye, where a path would meet a
+//                           lamp's image in glass by rare chance
 //   L D S* E                light sampling at D, and a ray from    the same, by the path's
 //                           D that may meet an emissive mesh       next ray
 //   L S+ D S* E             caustic map, at the first D from       the path goes on
@@ -22,8 +22,11 @@
 //                           eye
 //
 // Where paths bring the light of diffuse bounces (Indirect::paths) the last row is theirs, as in path tracing, and the
-// caustic map is asked at every D of the path; with Indirect::all_paths that row is theirs, too. So the map is in a
-// final gather, until it ends and asks both maps for all.
+// caustic map is asked at every D of the path; with Indirect::all_paths the caustic map's rows are theirs, too. So the
+// map is in a final gather, until it ends and asks both maps for all. Without CameraPass::gathers_rough R is as any S.
+//
+// Where the eye looks into water or glass the path follows both reflection and refraction, up to its third scattering;
+// elsewhere it goes on by one of its ways, drawn by what they bring.
 //
 // Straight passage through transparent surfaces is no scattering: shadow rays, photons and paths all pass.
 //

@@ -70,7 +70,7 @@ std::optional<ScatterSample> sample_lambertian(const Shading &shading, const Clo
     const Vec3 direction = Frame(closure.normal).to_world(sample_cosine_hemisphere(u, v));
     const float cosine = dot(direction, closure.normal);
     if (!(cosine > 0) || dot(direction, shading.normal) <= 0) return {};
-    return ScatterSample{direction, closure.weight, cosine / pi, diffuse_reflection, false};
+    return ScatterSample{direction, closure.weight, cosine / pi, diffuse_reflection, false, closure.normal};
 }
 
 /// A closure drawn by how much it scatters.
@@ -142,10 +142,11 @@ std::optional<ScatterSample> sample(const Shading &shading, Lobes lobes, const s
     if (drawn->lobe & reflection_lobes ? side <= 0 : side >= 0) return {};
 
     if (drawn->is_singular)
-        return ScatterSample{drawn->direction, drawn->weight / choice.probability, 0, drawn->lobe, true};
+        return ScatterSample{drawn->direction, drawn->weight / choice.probability, 0, drawn->lobe, true,
+                             closure.normal};
     const Scattering all = scatter(shading, lobes, drawn->direction, transport);
     if (!(all.pdf > 0)) return {};
-    return ScatterSample{drawn->direction, all.value / all.pdf, all.pdf, drawn->lobe, false};
+    return ScatterSample{drawn->direction, all.value / all.pdf, all.pdf, drawn->lobe, false, closure.normal};
 }
 
 Vec3 albedo(const Shading &shading, Lobes lobes) {

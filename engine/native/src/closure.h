@@ -90,6 +90,7 @@ struct ScatterSample {
     float pdf;    ///< by solid angle, of all lobes asked for; 0 where the direction is singular
     Lobe lobe;    ///< that it was drawn from
     bool is_singular;
+    Vec3 normal;  ///< of the closure that it was drawn from
 };
 
 /// Whether a closure scatters evenly.

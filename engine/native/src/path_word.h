@@ -22,8 +22,9 @@ inline std::array<Lobes, 3> parts_of(const Shading &shading) {
 struct Word {
     uint32_t length = 0, diffuse = 0;
     bool begins_glossy = false, ends_glossy = false;
-    bool is_rough = false;    ///< once by a rough part, before any diffuse scattering
-    bool is_focused = false;  ///< and glossily after that
+    bool has_caustics = true;  ///< CameraPass::has_caustics
+    bool is_rough = false;     ///< once by a rough part, before any diffuse scattering
+    bool is_focused = false;   ///< and glossily after that
 
     Word then(Part part) const {
         const bool is_diffuse = part == diffuse_part;
@@ -31,7 +32,8 @@ struct Word {
                 diffuse + (is_diffuse ? 1 : 0),
                 length == 0 ? !is_diffuse : begins_glossy,
                 !is_diffuse,
-                is_rough || (part == rough_part && diffuse == 0),
+                has_caustics,
+                is_rough || (has_caustics && part == rough_part && diffuse == 0),
                 is_rough && !is_diffuse};
     }
 

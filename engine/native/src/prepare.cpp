@@ -117,16 +117,28 @@ bool is_constant(const KnownArguments &a) {
     return !emits(a) || (a.is_constant(PM_PRINCIPLED_EMISSION) && !is_covered);
 }
 
+/// Whether a closure's normal, its last argument, is another than the surface's.
+bool has_own_normal(const Program &program, const pm_instruction &closure) {
+    const uint32_t normal = program.arguments[closure.first_argument + closure.argument_count - 1];
+    return std::ranges::none_of(program.instructions, [&](const pm_instruction &i) {
+        return !is_closure(i.op) && i.output == normal && i.op == PM_OP_INPUT && i.option == PM_INPUT_NORMAL;
+    });
+}
+
 /// Whether light goes as well one way as back. Layers take from those below by the side they are seen from, and so does
-/// what rough closures add for light that they scatter several times; bumps turn the cosine of one direction alone.
-bool is_reciprocal(const pm_instruction &instruction) {
+/// what rough closures add for light that they scatter several times; a normal that is not the surface's turns the
+/// cosine of one direction alone.
+bool is_reciprocal(const Program &program, const pm_instruction &instruction) {
     switch (instruction.op) {
         case PM_OP_INPUT:
-            return instruction.option != PM_INPUT_INCOMING && instruction.option != PM_INPUT_REFLECTION;
+            return instruction.option != PM_INPUT_INCOMING && instruction.option != PM_INPUT_REFLECTION &&
+                   instruction.option != PM_INPUT_BACKFACING;
+        case PM_OP_DIFFUSE:
+        case PM_OP_TRANSLUCENT:
+        case PM_OP_REFRACTION:
+            return !has_own_normal(program, instruction);
         case PM_OP_FRESNEL:
         case PM_OP_LAYER_WEIGHT:
-        case PM_OP_NORMAL_MAP:
-        case PM_OP_BUMP:
         case PM_OP_SHEEN:
         case PM_OP_GLOSSY:
         case PM_OP_METALLIC:
@@ -143,7 +155,8 @@ MaterialTraits traits_of(const Program &program) {
     MaterialTraits traits;
     traits.is_constant = true;
     for (const pm_instruction &instruction : program.instructions) {
-        traits.is_reciprocal &= is_reciprocal(instruction);
+        traits.is_reciprocal &= is_reciprocal(program, instruction);
+        traits.depends_on_ray |= instruction.op == PM_OP_INPUT && instruction.option > PM_INPUT_IS_CAMERA_RAY;
         if (!is_closure(instruction.op)) continue;
         const KnownArguments arguments{program, instruction};
         traits.emits |= emits(arguments);

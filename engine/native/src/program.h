@@ -37,10 +37,11 @@ struct MaterialTraits {
     bool emits = false;           ///< may emit
     bool is_transparent = false;  ///< may let light straight through, or be a hole
     bool may_scatter = true;
-    Lobes lobes = 0;            ///< that it may have; glossy_reflection stands for rough ones, too
-    float specular = 0;         ///< about which share of light its glossy lobes scatter, 0 to 1
-    bool is_constant = false;   ///< emission and transparency are the same at all points and for all rays
-    bool is_reciprocal = true;  ///< scatters as much from one direction to another as from that to the first
+    Lobes lobes = 0;              ///< that it may have; glossy_reflection stands for rough ones, too
+    float specular = 0;           ///< about which share of light its glossy lobes scatter, 0 to 1
+    bool is_constant = false;     ///< emission and transparency are the same at all points and for all rays
+    bool is_reciprocal = true;    ///< scatters as much from one direction to another as from that to the first
+    bool depends_on_ray = false;  ///< asks how rays came that are not the camera's
 };
 
 struct Material {

@@ -27,6 +27,18 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Whether all that scatters or shines is the same to rays of every kind but the camera's. Photons come the way of
+/// shadow rays and stay where a diffuse ray would have met their source.
+bool is_seen_alike(const Scene &scene, const WorldLight &world) {
+    constexpr uint32_t kinds = 1u << PM_RAY_DIFFUSE | 1u << PM_RAY_GLOSSY | 1u << PM_RAY_TRANSMISSION;
+    const auto is_same = [&](const Instance &instance) {
+        return (instance.visibility & kinds) == 0 || (instance.visibility & kinds) == kinds;
+    };
+    const auto asks = [&](uint32_t material) { return scene.materials[material].traits.depends_on_ray; };
+    return std::ranges::all_of(scene.instances, is_same) && std::ranges::none_of(scene.slot_materials, asks) &&
+           !world.depends_on_ray();
+}
+
 /// As many photons as pixels: error per time is flat between half and twice that.
 PhotonCounts photon_counts_for(const RenderSettings &settings, const Camera &camera) {
     const uint64_t pixels = uint64_t{camera.frame_width} * camera.frame_height;
@@ -48,6 +60,7 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       receives_(std::ranges::any_of(
           scene.slot_materials, [&](uint32_t m) { return (scene.materials[m].traits.lobes & diffuse_lobes) != 0; })),
+      is_seen_alike_(is_seen_alike(scene, lights.world_light())),
       indirect_(settings.use_final_gather ? Indirect::gather : Indirect::photons),
       light_samples_(std::max(1u, settings.light_samples)),
       counts_(photon_counts_for(settings, camera)),
@@ -79,14 +92,9 @@ bool Render::is_nested() const {
     return settings_.is_nested && settings_.integrator == Integrator::photon_map && traces(PhotonPurpose::caustic);
 }
 
-/// Whether photons bring caustics to rough reflections. They are kept where a diffuse ray would have come from: a
-/// glossy one must see the same.
+/// Whether photons bring caustics to rough reflections. Their mean direction would tell nothing of a lobe.
 bool Render::gathers_rough() const {
-    constexpr uint32_t both = 1u << PM_RAY_DIFFUSE | 1u << PM_RAY_GLOSSY;
-    return traces(PhotonPurpose::caustic) && first_radii_->caustic > 0 && !settings_.mean_direction &&
-           std::ranges::all_of(scene_.instances, [](const Instance &instance) {
-               return (instance.visibility & both) == 0 || (instance.visibility & both) == both;
-           });
+    return is_seen_alike_ && !settings_.mean_direction && traces(PhotonPurpose::caustic) && first_radii_->caustic > 0;
 }
 
 /// Whether photons tell camera paths where to go on diffusely.
@@ -263,6 +271,8 @@ CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const Pho
             maps.shadow_photons ? &*maps.shadow_photons : nullptr,
             indirect,
             has_maps && gathers_rough(),
+            settings_.integrator == Integrator::path_tracing ||
+                (settings_.integrator == Integrator::photon_map && settings_.use_caustics),
             settings_.max_bounces,
             light_samples_,
             hash(settings_.seed, camera_stream),

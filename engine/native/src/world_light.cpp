@@ -19,13 +19,6 @@ RayState ray_of(pm_ray kind) {
     return ray;
 }
 
-/// Whether a material asks how the ray came.
-bool depends_on_ray(const Material &material) {
-    return std::ranges::any_of(material.program.instructions, [](const pm_instruction &instruction) {
-        return instruction.op == PM_OP_INPUT && instruction.option >= PM_INPUT_IS_CAMERA_RAY;
-    });
-}
-
 }  // namespace
 
 WorldLight::WorldLight(const Scene &scene, const World &world) : scene_(scene), world_(world) {
@@ -37,7 +30,7 @@ WorldLight::WorldLight(const Scene &scene, const World &world) : scene_(scene), 
     for (const pm_ray kind : {PM_RAY_DIFFUSE, PM_RAY_GLOSSY, PM_RAY_TRANSMISSION})
         if (world.visibility & 1u << kind) rays.push_back(ray_of(kind));
     if (rays.empty()) return;
-    if (!depends_on_ray(material)) rays.resize(1);
+    if (!material.traits.depends_on_ray) rays.resize(1);
 
     const auto value = [&](Vec3 direction) {
         float largest = 0;
@@ -47,6 +40,10 @@ WorldLight::WorldLight(const Scene &scene, const World &world) : scene_(scene), 
     is_uniform_ = material.traits.is_constant;
     if (!is_uniform_) map_ = DirectionMap(value);
     mean_radiance_ = is_uniform_ ? value({0, 0, 1}) : map_.mean();
+}
+
+bool WorldLight::depends_on_ray() const {
+    return world_.material && scene_.materials[*world_.material].traits.depends_on_ray;
 }
 
 Vec3 WorldLight::radiance(Vec3 direction, const RayState &ray) const {

@@ -26,6 +26,8 @@ class WorldLight {
     bool shines() const { return mean_radiance_ > 0; }
     bool is_uniform() const { return is_uniform_; }
     uint32_t visibility() const { return world_.visibility; }
+    /// Whether rays of different kinds, but for the camera's, find different radiances.
+    bool depends_on_ray() const;
     /// Over all directions and RGB, W/(m2 sr); about right unless the world is uniform.
     float mean_radiance() const { return mean_radiance_; }
 
