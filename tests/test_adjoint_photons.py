@@ -86,7 +86,7 @@ def plate_in_a_room(surface: Surface) -> SceneData:
 def test_photons_bring_what_paths_find(name: str) -> None:
     """Unweighted, most of these plates scatter 6 to 260 % too much, or 9 to 90 % too little."""
     data, found = plate_in_a_room(PLATES[name]), []
-    for integrator, passes in ((Integrator.PHOTON_MAP, 24), (Integrator.PATH_TRACING, 1024)):
+    for integrator, passes in ((Integrator.PHOTON_MAP, 24), (Integrator.PATH_TRACING, 512)):
         settings = box_filtered(integrator=integrator, photon_count=1 << 14, radius=0.06, max_bounces=16)
         picture = Picture(data, settings).run(passes)
         found.append(sum(picture.pixels(term).mean() for term in (Pass.SOFT_INDIRECT, Pass.CAUSTIC)))

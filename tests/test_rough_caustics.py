@@ -98,7 +98,7 @@ ROOMS = {
 def room(request: pytest.FixtureRequest) -> tuple[SceneData, Picture]:
     """A room and its picture by paths."""
     data = ROOMS[request.param]
-    return data, Picture(data, box_filtered(integrator=Integrator.PATH_TRACING, max_bounces=8)).run(1024)
+    return data, Picture(data, box_filtered(integrator=Integrator.PATH_TRACING, max_bounces=8)).run(512)
 
 
 def check_once(paths: Picture, found: Picture) -> None:
