@@ -64,7 +64,7 @@ def test_a_lobe_that_photons_would_miss_is_left_to_the_path() -> None:
     assert Picture(by_image, box_filtered(**PHOTONS)).run(8).pixels(Pass.CAUSTIC).max() == 0
 
 
-def coated_room(floor: Material, seen_by: Ray = Ray.ALL) -> SceneData:
+def coated_room(floor: Material, seen_by: Ray = Ray.ALL, walls: Material | None = None) -> SceneData:
     """A room with a glossy floor, a glossy box and a mirror under a lamp so wide that paths find its reflections."""
     meshes = [
         quad((0, 0, -1), (1, 0, 0), (0, 1, 0)),
@@ -72,7 +72,12 @@ def coated_room(floor: Material, seen_by: Ray = Ray.ALL) -> SceneData:
         quad((0, 0.9, -0.2), (0, 0, 0.8), (0.8, 0, 0)),
         box((0.3, -0.4, -1), (0.8, 0.2, -0.4)),
     ]
-    materials = [floor, plastic(0.9, specular_level=0.0), material(mirror((SHARE,) * 3)), plastic(0.3, coat=1.0)]
+    materials = [
+        floor,
+        walls or plastic(0.9, specular_level=0.0),
+        material(mirror((SHARE,) * 3)),
+        plastic(0.3, coat=1.0),
+    ]
     light = lamp(LightType.RECTANGLE, (0, 0, 0.9), (0, 0, -1), 10.0, size=(1.2, 1.2), visibility=Ray.ALL)
     view = camera((-0.3, -0.9, 0.2), (0.1, 0.5, -0.9), (16, 16), half_angle=0.8)
     data = scene(meshes, view, materials, [light])
@@ -89,6 +94,7 @@ ROOMS = {
     "plastic": coated_room(plastic(0.4)),
     "lacquer over plastic": coated_room(plastic(0.4, coat=1.0)),
     "metal": coated_room(plastic(0.4, metallic=1.0)),
+    "gloss on all sides": coated_room(plastic(0.4, metallic=0.8), walls=plastic(0.4, metallic=0.8)),
     "a mirror that diffuse rays do not see": coated_room(plastic(0.4), Ray.ALL & ~Ray.DIFFUSE),
     "a mirror that glossy rays do not see": coated_room(plastic(0.4), Ray.ALL & ~Ray.GLOSSY),
 }
