@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from photon_maps_native import LightType, Ray, SceneData, diffuse
@@ -14,26 +16,28 @@ from tests.shapes import Picture, box, box_filtered, camera, lamp, quad, scene
 from tests.surfaces import Surface, glass, lambertian, material, mixed, principled, times, translucent
 
 
-def layered(option: int) -> Surface:
-    """White seen from aside and black head on, or the other way: Layer Weight or Fresnel as a diffuse colour."""
+def colored_by(share_of: Callable[[Shader], Register]) -> Surface:
+    """A Diffuse BSDF with a number for its colour."""
 
     def add(shader: Shader, weight: Register) -> None:
-        normal = shader.input(Input.NORMAL)
-        if option == 0:
-            share = shader.add(Op.LAYER_WEIGHT, shader.constant(0.5), normal, outputs=2) + 1
-        else:
-            share = shader.add(Op.FRESNEL, shader.constant(3.0), normal)
-        color = shader.add(Op.MATH, weight, share, option=Math.MULTIPLY)
-        shader.close(Op.DIFFUSE, color, shader.constant(0.0), normal)
+        color = shader.add(Op.MATH, weight, share_of(shader), option=Math.MULTIPLY)
+        shader.close(Op.DIFFUSE, color, shader.constant(0.0), shader.input(Input.NORMAL))
 
     return add
 
 
-def seen_from(shader: Shader, weight: Register) -> None:
-    """Brighter towards its normal than towards the side: Incoming's z as a colour."""
-    share = shader.add(Op.COMPONENT, shader.input(Input.INCOMING), option=2)
-    color = shader.add(Op.MATH, weight, share, option=Math.MULTIPLY)
-    shader.close(Op.DIFFUSE, color, shader.constant(0.0), shader.input(Input.NORMAL))
+def facing(shader: Shader) -> Register:
+    """Layer Weight's second output: 0 head on, 1 from the side."""
+    return shader.add(Op.LAYER_WEIGHT, shader.constant(0.5), shader.input(Input.NORMAL), outputs=2) + 1
+
+
+def fresnel(shader: Shader) -> Register:
+    return shader.add(Op.FRESNEL, shader.constant(3.0), shader.input(Input.NORMAL))
+
+
+def incoming(shader: Shader) -> Register:
+    """The cosine to the eye."""
+    return shader.add(Op.COMPONENT, shader.input(Input.INCOMING), option=2)
 
 
 def sheen(shader: Shader, weight: Register) -> None:
@@ -61,9 +65,9 @@ def tilted(op: Op, roughness: float, radians: float) -> Surface:
 LEAF = mixed(Input.BACKFACING, translucent((0.9,) * 3), translucent((0.2,) * 3))
 PLATES: dict[str, Surface] = {
     "Lambert's, which needs no weight": lambertian((0.8,) * 3),
-    "layer weight": layered(0),
-    "fresnel": layered(1),
-    "incoming": seen_from,
+    "layer weight": colored_by(facing),
+    "fresnel": colored_by(fresnel),
+    "incoming": colored_by(incoming),
     "sheen": sheen,
     "coat": principled(base_color=(0.8,) * 3, roughness=0.5, coat=1.0, coat_ior=2.0),
     "rough glass": glass(1.5, 1.0),

@@ -8,39 +8,36 @@ another engine needs none of it. So they are loaded one after the other, once a 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+import sys
 
 import bpy
 
 #: What viewports and the chart import when they are needed.
 MODULES = (
     *("session", "export.scene", "export.kept", "export.view", "export.view_light"),
-    *("viewport_worker", "capture", "chart.job"),
+    *("viewport_rendering", "viewport_worker", "capture", "chart.job"),
 )
 LOOK_SECONDS = 0.5
 PAUSE_SECONDS = 0.05  #: between two of them, for Blender to draw
-
-_left: Iterator[str] = iter(())
 
 
 def _load() -> float | None:
     """Load the next module, if there is a scene for it; return when to come again, or None."""
     if all(scene.render.engine != "PHOTON_MAPS" for scene in bpy.data.scenes):
         return LOOK_SECONDS
-    name = next(_left, None)
+    names = (f"{__package__.rpartition('.')[0]}.engine.{name}" for name in MODULES)
+    name = next((name for name in names if name not in sys.modules), None)
     if name is None:
         return None
     try:
-        importlib.import_module(f"..engine.{name}", __package__)
+        importlib.import_module(name)
     except ImportError:
         return None  # the viewport, or F12, will say what is missing
     return PAUSE_SECONDS
 
 
 def register() -> None:
-    global _left
     if not bpy.app.background:
-        _left = iter(MODULES)
         bpy.app.timers.register(_load, persistent=True)
 
 

@@ -151,7 +151,7 @@ void CameraPath::add_caustic_levels(const SurfacePoint &hit, const Shading &shad
 /// Shares the ways to go on by what they bring.
 void CameraPath::plan(const SurfacePoint &hit, const Shading &shading) {
     const float straight = average(shading.transparency);
-    parts_ = parts_of(shading);
+    parts_ = parts_of(shading, pass_.has_caustics);
     const float diffuse = goes_on_diffusely() ? average(albedo(shading, parts_[diffuse_part])) : 0;
     const float rough = average(albedo(shading, parts_[rough_part]));
     const float reflected = average(albedo(shading, parts_[glossy_part] & reflection_lobes));

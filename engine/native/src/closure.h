@@ -27,6 +27,8 @@ constexpr Lobes diffuse_lobes = diffuse_reflection | diffuse_transmission;
 constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission | rough_reflection;
 constexpr Lobes reflection_lobes = diffuse_reflection | glossy_reflection | rough_reflection;
 constexpr Lobes all_lobes = diffuse_lobes | glossy_lobes;
+inline constexpr std::array each_lobe{diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission,
+                                      rough_reflection};
 
 /// Roughness from which a lobe is so wide that of the photons around a point enough are within it.
 constexpr float least_rough = 0.25f;

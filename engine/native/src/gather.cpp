@@ -69,11 +69,11 @@ Levels levels_at(const PhotonGather &gather, const SurfacePoint &hit, Vec3 closu
 
 /// What a surface's closures ask of the photons. Lambertian ones share one irradiance, as long as they share their
 /// normal.
-struct Parts {
+struct Asked {
     Vec3 reflected, transmitted, normal, back_normal;
     bool is_simple = true, reflects = false;
 
-    Parts(const Shading &shading, Lobes lobes) {
+    Asked(const Shading &shading, Lobes lobes) {
         for (const Closure &closure : shading.scattering()) {
             if (closure.type == ClosureType::translucent) {
                 transmitted += closure.weight;
@@ -101,18 +101,18 @@ ProbedIrradiance probe_irradiance(const PhotonGather &gather, const SurfacePoint
 Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes) {
     Gathered gathered;
     if (gather.empty()) return gathered;
-    const Parts parts(shading, lobes);
-    if (parts.reflects) {
-        const Weighing weighing = parts.is_simple ? Weighing{} : Weighing{&shading, lobes & reflection_lobes};
-        const Estimate estimate = estimate_at(gather, hit, parts.is_simple ? parts.normal : hit.normal, weighing);
-        gathered.radiance += parts.is_simple ? parts.reflected * estimate.value / pi : estimate.value;
+    const Asked asked(shading, lobes);
+    if (asked.reflects) {
+        const Weighing weighing = asked.is_simple ? Weighing{} : Weighing{&shading, lobes & reflection_lobes};
+        const Estimate estimate = estimate_at(gather, hit, asked.is_simple ? asked.normal : hit.normal, weighing);
+        gathered.radiance += asked.is_simple ? asked.reflected * estimate.value / pi : estimate.value;
         gathered.density += estimate.density;
     }
 
     // Light that lands on the other side and comes through.
-    if (max_component(parts.transmitted) > 0) {
-        const Estimate estimate = estimate_at(gather, hit.turned(), parts.back_normal, {});
-        gathered.radiance += parts.transmitted * estimate.value / pi;
+    if (max_component(asked.transmitted) > 0) {
+        const Estimate estimate = estimate_at(gather, hit.turned(), asked.back_normal, {});
+        gathered.radiance += asked.transmitted * estimate.value / pi;
         gathered.density += estimate.density;
     }
     return gathered;
@@ -121,13 +121,13 @@ Gathered gather_radiance(const PhotonGather &gather, const SurfacePoint &hit, co
 Levels gather_levels(const PhotonGather &gather, const SurfacePoint &hit, const Shading &shading, Lobes lobes) {
     Levels gathered;
     if (gather.empty()) return gathered;
-    const Parts parts(shading, lobes);
-    if (parts.reflects && parts.is_simple)
-        gathered += parts.reflected / pi * levels_at(gather, hit, parts.normal, {});
-    else if (parts.reflects)
+    const Asked asked(shading, lobes);
+    if (asked.reflects && asked.is_simple)
+        gathered += asked.reflected / pi * levels_at(gather, hit, asked.normal, {});
+    else if (asked.reflects)
         gathered += levels_at(gather, hit, hit.normal, {&shading, lobes & reflection_lobes});
-    if (max_component(parts.transmitted) > 0)
-        gathered += parts.transmitted / pi * levels_at(gather, hit.turned(), parts.back_normal, {});
+    if (max_component(asked.transmitted) > 0)
+        gathered += asked.transmitted / pi * levels_at(gather, hit.turned(), asked.back_normal, {});
     return gathered;
 }
 

@@ -65,8 +65,7 @@ RayState CameraPath::receiver(const Shading &shading) const {
     RayState state = state_;
     state.kinds = 0;
     ++state.depth;
-    for (const Lobe lobe :
-         {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission, rough_reflection})
+    for (const Lobe lobe : each_lobe)
         if (lobes_of(shading) & lobe) state.kinds |= ray_kinds(lobe);
     return state;
 }

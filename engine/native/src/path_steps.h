@@ -28,7 +28,6 @@ class CameraPath {
           sample_(sample),
           ray_(ray) {
         state_.kinds = ray_.kinds = 1u << PM_RAY_CAMERA;
-        word_.has_caustics = pass.has_caustics;
     }
 
     /// Adds to the sample what the path brings.

@@ -12,9 +12,10 @@ enum Part : uint32_t { diffuse_part, rough_part, glossy_part };
 
 /// Returns a surface's lobes by Part. Photons are kept on diffuse surfaces: others' rough reflections are as any glossy
 /// ones.
-inline std::array<Lobes, 3> parts_of(const Shading &shading) {
+/// @param has_caustics else all are
+inline std::array<Lobes, 3> parts_of(const Shading &shading, bool has_caustics) {
     const Lobes lobes = lobes_of(shading), diffuse = lobes & diffuse_lobes;
-    const Lobes rough = diffuse ? lobes & rough_reflection : 0;
+    const Lobes rough = has_caustics && diffuse ? lobes & rough_reflection : 0;
     return {diffuse, rough, lobes & ~(diffuse | rough)};
 }
 
@@ -22,19 +23,13 @@ inline std::array<Lobes, 3> parts_of(const Shading &shading) {
 struct Word {
     uint32_t length = 0, diffuse = 0;
     bool begins_glossy = false, ends_glossy = false;
-    bool has_caustics = true;  ///< CameraPass::has_caustics
-    bool is_rough = false;     ///< once by a rough part, before any diffuse scattering
-    bool is_focused = false;   ///< and glossily after that
+    bool is_rough = false;    ///< once by a rough part
+    bool is_focused = false;  ///< and glossily after that
 
     Word then(Part part) const {
         const bool is_diffuse = part == diffuse_part;
-        return {length + 1,
-                diffuse + (is_diffuse ? 1 : 0),
-                length == 0 ? !is_diffuse : begins_glossy,
-                !is_diffuse,
-                has_caustics,
-                is_rough || (has_caustics && part == rough_part && diffuse == 0),
-                is_rough && !is_diffuse};
+        return {length + 1,  diffuse + (is_diffuse ? 1 : 0), length == 0 ? !is_diffuse : begins_glossy,
+                !is_diffuse, is_rough || part == rough_part, is_rough && !is_diffuse};
     }
 
     /// Whether the word is one of a caustic: light that glossy surfaces, at least one, sent to where a diffuse or a

@@ -198,22 +198,16 @@ class PhotonPath {
         const SurfacePoint seen = transmits ? hit.turned() : hit;
         const float arriving = dot(from, hit.shading_normal), leaving = dot(to, seen.shading_normal);
         if (!(arriving > 0 && leaving > 0)) return drawn;  // before one surface and behind the other
+        constexpr Vec3 bound{max_shading_ratio, max_shading_ratio, max_shading_ratio};  // lest one outshine all others
         if (drawn->is_singular) {
             // Of a boundary without roughness there is but the normal that is not the same.
             const float turned = std::abs(dot(from, drawn->normal) / dot(to, drawn->normal));
-            drawn->weight = drawn->weight * std::min(turned * leaving / arriving, max_shading_ratio);
+            drawn->weight = min(drawn->weight * (turned * leaving / arriving), bound);
             return drawn;
         }
         const Transport back = transport == Transport::flux ? Transport::radiance : Transport::flux;
-        const Vec3 here = evaluate(shading, lobes, to, transport) / leaving;
-        const Vec3 there = evaluate(shade(scene_, seen, to, state_), lobes, from, back) / arriving;
-        // What layers leave has no bound that the weight itself has not; what bumps turn has, as in shading_ratio().
-        const auto weigh = [](float weight, float a, float b) {
-            return b > 0 ? std::min(weight * a / b, std::max(weight, max_shading_ratio)) : weight;
-        };
-        const Vec3 weight = drawn->weight;
-        drawn->weight = {weigh(weight.x, there.x, here.x), weigh(weight.y, there.y, here.y),
-                         weigh(weight.z, there.z, here.z)};
+        const Vec3 there = evaluate(shade(scene_, seen, to, state_), lobes, from, back);
+        drawn->weight = min(there * (leaving / (arriving * drawn->pdf)), bound);
         return drawn;
     }
 

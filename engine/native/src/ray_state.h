@@ -19,8 +19,7 @@ constexpr uint32_t visible_kind(Lobe lobe) {
 /// The lobes whose rays meet what has the given visibility.
 constexpr Lobes lobes_that_see(uint32_t visibility) {
     Lobes lobes = 0;
-    for (const Lobe lobe :
-         {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission, rough_reflection})
+    for (const Lobe lobe : each_lobe)
         if (visibility & visible_kind(lobe)) lobes |= lobe;
     return lobes;
 }

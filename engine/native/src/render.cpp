@@ -11,7 +11,7 @@ namespace photon_maps {
 
 namespace {
 
-constexpr uint32_t photon_stream = 0x70686f74, caustic_stream = 0x63617573, camera_stream = 0x63616d65;
+constexpr uint32_t camera_stream = 0x63616d65;
 constexpr uint64_t min_photon_count = 1 << 16, max_photon_count = 1 << 22;
 
 /// Adds the time that a scope takes.
@@ -26,18 +26,6 @@ class Stopwatch {
     double &seconds_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// Whether all that scatters or shines is the same to rays of every kind but the camera's. Photons come the way of
-/// shadow rays and stay where a diffuse ray would have met their source.
-bool is_seen_alike(const Scene &scene, const WorldLight &world) {
-    constexpr uint32_t kinds = 1u << PM_RAY_DIFFUSE | 1u << PM_RAY_GLOSSY | 1u << PM_RAY_TRANSMISSION;
-    const auto is_same = [&](const Instance &instance) {
-        return (instance.visibility & kinds) == 0 || (instance.visibility & kinds) == kinds;
-    };
-    const auto asks = [&](uint32_t material) { return scene.materials[material].traits.depends_on_ray; };
-    return std::ranges::all_of(scene.instances, is_same) && std::ranges::none_of(scene.slot_materials, asks) &&
-           !world.depends_on_ray();
-}
 
 /// As many photons as pixels: error per time is flat between half and twice that.
 PhotonCounts photon_counts_for(const RenderSettings &settings, const Camera &camera) {
@@ -60,7 +48,6 @@ Render::Render(Scene &scene, const Lights &lights, const Emission &emission, con
       pixel_sampler_(settings.pixel_filter, settings.pixel_filter_width),
       receives_(std::ranges::any_of(
           scene.slot_materials, [&](uint32_t m) { return (scene.materials[m].traits.lobes & diffuse_lobes) != 0; })),
-      is_seen_alike_(is_seen_alike(scene, lights.world_light())),
       indirect_(settings.use_final_gather ? Indirect::gather : Indirect::photons),
       light_samples_(std::max(1u, settings.light_samples)),
       counts_(photon_counts_for(settings, camera)),
@@ -75,51 +62,6 @@ void Render::set_camera(const Camera &camera) {
     if (error_) error_.emplace(camera.width, camera.height);
     left_out_.assign(film_.tiles().count(), false);
     statistics_ = {};
-}
-
-bool Render::traces(PhotonPurpose purpose) const {
-    const bool wants_photons =
-        (settings_.integrator == Integrator::photon_map || is_guided()) && settings_.max_bounces > 0;
-    if (!wants_photons || emission_.empty() || scene_.instances.empty() || !receives_) return false;
-    if (purpose == PhotonPurpose::caustic)
-        return settings_.use_caustics && emission_.has_casters() && indirect_ != Indirect::all_paths;
-    return settings_.use_indirect && indirect_ != Indirect::paths && indirect_ != Indirect::all_paths;
-}
-
-/// Whether caustics are gathered by nested radii, as far as is known.
-bool Render::is_nested() const {
-    if (first_radii_ && first_radii_->caustic == 0) return false;
-    return settings_.is_nested && settings_.integrator == Integrator::photon_map && traces(PhotonPurpose::caustic);
-}
-
-/// Whether photons bring caustics to rough reflections. Their mean direction would tell nothing of a lobe.
-bool Render::gathers_rough() const {
-    return is_seen_alike_ && !settings_.mean_direction && traces(PhotonPurpose::caustic) && first_radii_->caustic > 0;
-}
-
-/// Whether photons tell camera paths where to go on diffusely.
-bool Render::is_guided() const {
-    const bool goes_on = settings_.integrator == Integrator::path_tracing ||
-                         (settings_.integrator == Integrator::photon_map && indirect_ != Indirect::photons);
-    return settings_.use_photon_guiding && goes_on;
-}
-
-bool Render::marks_shadows() const {
-    return settings_.use_shadow_photons && settings_.integrator == Integrator::photon_map;
-}
-
-PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
-    const uint32_t stream = purpose == PhotonPurpose::caustic ? caustic_stream : photon_stream;
-    const bool is_global = purpose == PhotonPurpose::global;
-    const uint64_t count = is_global ? counts_.global : counts_.caustic;
-    return {purpose,
-            count * index,
-            count,
-            settings_.max_bounces,
-            hash(settings_.seed, stream),
-            settings_.threads,
-            settings_.keep_photons || (is_global && indirect_ == Indirect::gather),
-            is_global && marks_shadows()};
 }
 
 void Render::render_pass(uint32_t index) {
@@ -163,36 +105,6 @@ Render::Radii Render::radii_of_pass(uint32_t index) const {
     return {shrunk_radius(first_radii_->indirect, index), shrunk_radius(first_radii_->caustic, index)};
 }
 
-PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
-    return PhotonMap(photons, settings_.threads, &cancel_);
-}
-
-/// What a pass traces, for the maps that there are.
-std::vector<PhotonTracing> Render::tracings(uint32_t index) const {
-    std::vector<PhotonTracing> wanted;
-    if (first_radii_->indirect > 0) {
-        wanted.push_back(tracing(PhotonPurpose::global, index));
-        if (indirect_ == Indirect::gather) --wanted.back().max_bounces;  // the gathering ray is a bounce more
-    }
-    if (first_radii_->caustic > 0) wanted.push_back(tracing(PhotonPurpose::caustic, index));
-    return wanted;
-}
-
-TracedPhotons Render::trace(uint32_t index) {
-    TracedPhotons photons;
-    for (const PhotonTracing &wanted : tracings(index)) {
-        TracedPhotons traced = trace_photons(scene_, emission_, wanted, &cancel_);
-        if (wanted.purpose == PhotonPurpose::global) {
-            photons = std::move(traced);
-            continue;
-        }
-        photons.photons[PM_PHOTONS_CAUSTIC] = std::move(traced.photons[PM_PHOTONS_CAUSTIC]);
-        photons.rays += traced.rays;
-        photons.caustic_rays = traced.rays;
-    }
-    return photons;
-}
-
 std::shared_ptr<const TracedPass> Render::trace_pass(uint32_t index, const Radii &radii, RenderStatistics &spent) {
     auto pass = std::make_shared<TracedPass>();
     {
@@ -205,57 +117,6 @@ std::shared_ptr<const TracedPass> Render::trace_pass(uint32_t index, const Radii
     pass->maps = build_maps(pass->photons, radii, settings_.keep_photons);
     if (!settings_.keep_photons) pass->photons.photons = {};
     return pass;
-}
-
-/// Builds what pass 2 asks of the photons, whose lists end here unless they are kept.
-Maps Render::build_maps(TracedPhotons &photons, const Radii &radii, bool keeps_lists) const {
-    Maps maps;
-    if (is_guided() && radii.indirect > 0) maps.importance = importance_of(photons);
-    if (marks_shadows() && radii.indirect > 0) maps.shadow_photons.emplace(photons.shadow_photons, radii.indirect / 2);
-    const size_t beside = (maps.importance ? maps.importance->memory_bytes() : 0) +
-                          (maps.shadow_photons ? maps.shadow_photons->memory_bytes() : 0) +
-                          photons.shadow_photons.size() * sizeof(ShadowPhoton);
-    photons.shadow_photons = {};
-    const auto count_memory = [&](size_t listed) {
-        maps.memory_bytes = std::max(maps.memory_bytes, beside + listed * sizeof(Photon) + maps.global.memory_bytes() +
-                                                            maps.caustic.memory_bytes());
-    };
-    count_memory(photons.size());
-    const auto build = [&](PhotonMap &map, pm_photon_kind kind, const std::vector<Photon> &list) {
-        map = map_of(list);
-        count_memory(photons.size());
-        if (!keeps_lists) photons.photons[kind] = {};  // the map has copies
-    };
-    if (settings_.integrator != Integrator::photon_map) return maps;
-    if (radii.indirect > 0 && indirect_ == Indirect::gather) {
-        // Where the rays of a final gather end, photons bring the lights' own light too.
-        std::vector<Photon> all = photons[PM_PHOTONS_DIRECT];
-        all.insert(all.end(), photons[PM_PHOTONS_INDIRECT].begin(), photons[PM_PHOTONS_INDIRECT].end());
-        count_memory(photons.size() + all.size());
-        build(maps.global, PM_PHOTONS_INDIRECT, all);
-    } else if (radii.indirect > 0) {
-        build(maps.global, PM_PHOTONS_INDIRECT, photons[PM_PHOTONS_INDIRECT]);
-    }
-    if (radii.caustic > 0) build(maps.caustic, PM_PHOTONS_CAUSTIC, photons[PM_PHOTONS_CAUSTIC]);
-    return maps;
-}
-
-/// What paths do not find by light sampling nor in a map: in path tracing caustics too.
-PhotonImportance Render::importance_of(const TracedPhotons &photons) const {
-    // Photons that only tell where to go are not summed: their cubes need not shrink.
-    PhotonImportance importance(2 * first_radii_->indirect);
-    importance.add(photons[PM_PHOTONS_INDIRECT]);
-    if (settings_.integrator == Integrator::path_tracing) importance.add(photons[PM_PHOTONS_CAUSTIC]);
-    return importance;
-}
-
-PhotonMaps Render::gathers_of(const Maps &maps, const Radii &radii) const {
-    const auto gather = [&](const PhotonMap &map, float radius) -> PhotonGather {
-        Kernel kernel = settings_.kernel;
-        kernel.radius = radius;
-        return {&map, edges_.get(), coverage_.get(), kernel, settings_.nearest_count, settings_.mean_direction};
-    };
-    return {gather(maps.global, radii.indirect), gather(maps.caustic, radii.caustic)};
 }
 
 CameraPass Render::camera_pass(const Camera &camera, const Maps &maps, const PhotonMaps &gathers, Indirect indirect,

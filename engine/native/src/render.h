@@ -151,8 +151,7 @@ class Render {
     Camera view_;    ///< of the picture
     RenderSettings settings_;
     PixelSampler pixel_sampler_;
-    bool receives_;       ///< whether any surface may scatter light diffusely, so that photons are of use
-    bool is_seen_alike_;  ///< what photons meet is what all rays but the camera's meet
+    bool receives_;  ///< whether any surface may scatter light diffusely, so that photons are of use
     Indirect indirect_;
     uint32_t light_samples_;
     PhotonCounts counts_;
