@@ -11,8 +11,9 @@
 
 namespace photon_maps {
 
-/// Mixes the bits of a number (Wellons' lowbias32).
-constexpr uint32_t hash(uint32_t x) {
+/// Mixes the bits of a number, or of each of several (Wellons' lowbias32).
+template <class Word>
+constexpr Word hash(Word x) {
     x ^= x >> 16;
     x *= 0x7feb352du;
     x ^= x >> 15;
@@ -21,7 +22,10 @@ constexpr uint32_t hash(uint32_t x) {
     return x;
 }
 
-constexpr uint32_t hash(uint32_t a, uint32_t b) { return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
+template <class Word>
+constexpr Word hash(Word a, Word b) {
+    return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
+}
 
 /// Four numbers in [0, 1): point `index` of the sequence that `seed` selects.
 std::array<float, 4> sobol4(uint64_t index, uint32_t seed);
