@@ -57,7 +57,7 @@ export BLEND OUT FRAME SIZE CPU_SECONDS SECONDS SCENE METHOD LIMIT
 .NOTPARALLEL:
 .PHONY: help demo beside seed chart limits prediction calibration scale sweep package package-twice \
     $(PLATFORMS:%=package-twice-%) test built-checks test-native test-python test-gui test-versions test-first-render \
-    test-wine test-here test-campaign soak mutate lint format bench docs clean
+    test-wine test-here test-campaign soak mutate lint format bench growth docs clean
 
 help:
 	@echo 'make demo      render a picture: [BLEND=file.blend] [OUT=picture.png] [FRAME=1] [SIZE=50%]'
@@ -71,7 +71,9 @@ help:
 	@echo 'make test-wine the packages of the other platforms: under wine, on older processors, and by their headers'
 	@echo 'make soak      what takes long to break: random calls under sanitizers, many renders, [SOAK_SECONDS=600] each'
 	@echo 'make mutate    break the program in some hundred places, one at a time, and see that a test notices'
-	@echo 'make bench     speed of the photon map, the photon pass, the export and the viewport'
+	@echo 'make bench     how far ahead, beside Mitsuba and Cycles, and what each part takes, 25 minutes: [DOCUMENTS=1]'
+	@echo '               [LEAD="--scenes cornell --repetitions 1"]; then the speed of the export and the viewport'
+	@echo 'make growth    time and memory by photons, triangles, lamps and pixels, 6 minutes: [GROWTH=--large] [DOCUMENTS=1]'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
 	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'
@@ -356,16 +358,25 @@ soak: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 mutate: .venv/test.stamp .venv/system.stamp build/native/stamp $(ZIP)
 	$(PYTHON) tools/mutate.py $(MUTATE)
 
-bench: build/native/stamp .venv/system.stamp
+# The tables of docs/speed.md: how much sooner to an error than others, and what each part takes.
+bench: build/native/stamp .venv/chart.stamp .venv/system.stamp .venv/peers.stamp
 	@[ -e /usr/include/nanoflann.hpp ] || bash tools/apt_install.sh libnanoflann-dev
 	cmake -S engine/native -B build/cmake/release -DPHOTON_MAPS_BENCHMARKS=ON
 	cmake --build build/cmake/release
-	@for program in build/cmake/release/benchmarks/*_bench; do \
-	    echo "== $$(basename $$program)"; PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) $$program || exit 1; \
-	done
+	@echo '== lead_bench'
+	@PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.lead_bench \
+	    $(LEAD) $(if $(DOCUMENTS),--documents)
+	@PYTHONPATH=.:build/native PHOTON_MAPS_EMBREE=$$(echo $(EMBREE)) $(PYTHON) -m benchmarks.parts_bench \
+	    $(if $(DOCUMENTS),--documents) build/cmake/release/benchmarks/*_bench
+	@PYTHONPATH=.:build/native $(PYTHON) -m benchmarks.gains $(if $(DOCUMENTS),--documents)
 	@for script in export viewport; do \
 	    echo "== $${script}_bench"; PYTHONPATH=.:build/native $(PYTHON) benchmarks/$${script}_bench.py || exit 1; \
 	done
+
+# The curves of docs/speed.md.
+growth: build/native/stamp .venv/chart.stamp
+	@PYTHONPATH=.:build/native OPENBLAS_NUM_THREADS=1 $(PYTHON) -m benchmarks.growth_bench \
+	    $(GROWTH) $(if $(DOCUMENTS),--documents)
 
 # What warns, such as a link that leads nowhere, fails; so does what a reader would fetch from elsewhere.
 docs: .venv/docs.stamp

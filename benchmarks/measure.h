@@ -75,6 +75,14 @@ inline Statistic ratio(std::vector<double> dividends, const std::vector<double> 
     return Statistic(std::move(dividends));
 }
 
+/// A row of the table that parts_bench.py gathers from all programs: it knows what is wanted of each by its name.
+inline void print_row(const std::string &name, const Statistic &ratio) {
+    std::printf("row: %s = %.4g %.4g %.4g\n", name.c_str(), ratio.median, ratio.least, ratio.greatest);
+}
+
+/// Returns how many rounds the command line asks for.
+inline int rounds_asked(int argc, char **argv) { return argc > 1 ? std::max(1, std::atoi(argv[1])) : 5; }
+
 /// Says what else the machine is doing: absolute figures of a busy one mean little, ratios still do.
 inline void print_machine() {
     double load[3] = {};

@@ -24,17 +24,17 @@ SIDE = 224  #: quads along a wave's side; two triangles each make 100 352
 ROWS = 10  #: of waves, and as many columns
 
 
-def wave() -> Mesh:
-    """Return a smooth-shaded square of side 1 in waves."""
-    t = np.linspace(-0.5, 0.5, SIDE + 1, dtype=np.float32)
+def wave(side: int = SIDE) -> Mesh:
+    """Return a smooth-shaded square of side 1 in waves, of so many quads along each side."""
+    t = np.linspace(-0.5, 0.5, side + 1, dtype=np.float32)
     x, y = np.meshgrid(t, t)
     vertices = np.stack([x, y, 0.2 + 0.1 * np.sin(20 * x) * np.cos(20 * y)], -1).reshape(-1, 3)
     slopes = [2 * np.cos(20 * x) * np.cos(20 * y), -2 * np.sin(20 * x) * np.sin(20 * y)]
     normals = np.stack([-slopes[0], -slopes[1], np.ones_like(x)], -1).reshape(-1, 3)
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    i, j = np.meshgrid(np.arange(SIDE), np.arange(SIDE), indexing="ij")
-    a = (i * (SIDE + 1) + j).ravel()
-    triangles = np.concatenate([np.stack([a, a + 1, a + SIDE + 2], 1), np.stack([a, a + SIDE + 2, a + SIDE + 1], 1)])
+    i, j = np.meshgrid(np.arange(side), np.arange(side), indexing="ij")
+    a = (i * (side + 1) + j).ravel()
+    triangles = np.concatenate([np.stack([a, a + 1, a + side + 2], 1), np.stack([a, a + side + 2, a + side + 1], 1)])
     return Mesh(vertices, triangles.astype(np.uint32), corner_normals=normals[triangles].astype(np.float32))
 
 
@@ -87,4 +87,5 @@ def main() -> None:
     print(f"trace {done.seconds_trace:.0f} s, build {done.seconds_build:.0f} s, gather {done.seconds_gather:.0f} s")
 
 
-main()
+if __name__ == "__main__":
+    main()

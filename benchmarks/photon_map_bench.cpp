@@ -120,10 +120,12 @@ std::vector<Place> some_of(const std::vector<Place> &places, size_t step) {
 
 // --- The work of both ---
 
-void report(const char *what, double work, const bench::Times &ours, const bench::Times &theirs) {
+void report(const Scene &scene, const char *what, double work, const bench::Times &ours, const bench::Times &theirs) {
     std::printf("  %-30s %-28s %-28s %s\n", what, bench::rate(work * 1e-3, ours.cpu).text(1).c_str(),
                 bench::rate(work * 1e-3, theirs.cpu).text(1).c_str(),
                 bench::ratio(theirs.cpu, ours.cpu).text(2).c_str());
+    bench::print_row("times as fast as nanoflann, " + std::string(scene.name) + " " + what,
+                     bench::ratio(theirs.cpu, ours.cpu));
 }
 
 void compare_sums(const PhotonMap &map, const Tree &tree, const Scene &scene, double photons) {
@@ -154,7 +156,7 @@ void compare_sums(const PhotonMap &map, const Tree &tree, const Scene &scene, do
     char what[64];
     std::snprintf(what, sizeof what, "queries: estimate of %.0f",
                   static_cast<double>(found) / static_cast<double>(places.size()));
-    report(what, static_cast<double>(places.size()), times[0], times[1]);
+    report(scene, what, static_cast<double>(places.size()), times[0], times[1]);
 }
 
 void compare_nearest(const PhotonMap &map, const Tree &tree, const Scene &scene, size_t k) {
@@ -200,8 +202,8 @@ void compare_nearest(const PhotonMap &map, const Tree &tree, const Scene &scene,
     bench::require(unlimited == nanoflann_found && guessed == nanoflann_found, "nanoflann found others as the nearest");
     const auto count = static_cast<double>(places.size());
     const std::string nearest = "queries: " + std::to_string(k) + " nearest";
-    report(nearest.c_str(), count, times[0], times[2]);
-    report((nearest + ", guessed").c_str(), count, times[1], times[2]);
+    report(scene, nearest.c_str(), count, times[0], times[2]);
+    report(scene, (nearest + ", guessed").c_str(), count, times[1], times[2]);
 }
 
 void run(const Scene &scene) {
@@ -219,7 +221,7 @@ void run(const Scene &scene) {
     std::printf("%s: %.0f photons, %.1f bytes each in the map\n", scene.name, photons,
                 static_cast<double>(map->memory_bytes()) / photons);
     std::printf("  %-30s %-28s %-28s %s\n", "thousands a second of", "photon map", "nanoflann", "times as fast");
-    report("photons: build", photons, times[0], times[1]);
+    report(scene, "photons: build", photons, times[0], times[1]);
     for (const size_t count : {50, 200}) {
         compare_sums(*map, *tree, scene, static_cast<double>(count));
         compare_nearest(*map, *tree, scene, count);

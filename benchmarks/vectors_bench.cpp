@@ -123,9 +123,13 @@ void compare() {
         const auto &taken = seconds[work];
         std::printf("%s: %s thousand a second by SSE4.2\n", works[work],
                     bench::rate(1e-3 * query_count, taken[0]).text(1).c_str());
-        for (size_t level = 1; level < count; ++level)
-            std::printf("  %-8s %s times as fast as %s\n", levels[level].name,
-                        bench::ratio(taken[level - 1], taken[level]).text(3).c_str(), levels[level - 1].name);
+        for (size_t level = 1; level < count; ++level) {
+            const bench::Statistic ratio = bench::ratio(taken[level - 1], taken[level]);
+            std::printf("  %-8s %s times as fast as %s\n", levels[level].name, ratio.text(3).c_str(),
+                        levels[level - 1].name);
+            bench::print_row(std::string(levels[level].name) + " over " + levels[level - 1].name + ", " + works[work],
+                             ratio);
+        }
     }
 }
 

@@ -49,13 +49,13 @@ class Rival:
         except PackageNotFoundError:
             return None
 
-    def measure(self, scene: Scene, folder: Path) -> list[Row]:
-        """Render a scene.
+    def measure(self, scene: Scene, folder: Path, seconds: float = MAIN_SECONDS) -> list[Row]:
+        """Render a scene for some CPU-seconds.
 
         :raises RivalFailure: with the last that it said, if it fails
         """
         out = folder / f"{scene.name}-{self.worker}-{self.name.replace(' ', '_')}.npz"
-        arguments = [scene.name, self.name, str(MAIN_SECONDS), str(out)]
+        arguments = [scene.name, self.name, str(seconds), str(out)]
         try:
             done = subprocess.run(
                 [sys.executable, "-m", f"benchmarks.chart.{self.worker}", *arguments],
