@@ -20,7 +20,18 @@ from benchmarks.goals import Goal, Spread, judged, machine, publish
 ROW = re.compile(r"row: (.+) = (\S+) (\S+) (\S+)")
 
 #: What is wanted of the rows whose names match, the first that does.
-GOALS: dict[str, Goal] = {}
+GOALS = {
+    "^camera and shadow rays: rays": Goal(0.7),
+    "(rays a second, over bare ones|the same by two threads)$": Goal(0.85),
+    "build, over the pass's$|two threads, wall time$": Goal(0.3, is_least=False),
+    "wall time by one thread, over two$|of the map's build$": Goal(1.85),
+    "nanoflann, even queries: estimate of [45]": Goal(6),
+    "nanoflann, even queries: estimate of (1|2)": Goal(9),
+    "nanoflann, even queries: 50 nearest, guessed$": Goal(8),
+    "nanoflann, even queries: 200 nearest, guessed$": Goal(15),
+    "nanoflann, clustered queries: (estimate|.* guessed$)": Goal(4),
+    "true area": Goal(0.2, is_least=False),
+}
 
 
 def run(program: str) -> list[tuple[str, Spread]]:

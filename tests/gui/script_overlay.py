@@ -95,6 +95,19 @@ def picture(name: str) -> np.ndarray:
     return rows[region.y : region.y + region.height, region.x : region.x + region.width]
 
 
+def settled(name: str) -> driver.Steps:
+    """Wait until the first viewport shows the same twice: Blender smooths edges sample by sample."""
+    shown = picture(name)
+
+    def is_still() -> bool:
+        nonlocal shown
+        before, shown = shown, picture(name)
+        return np.array_equal(before, shown)
+
+    yield 0.5
+    yield from until(is_still, 30.0, 0.5)
+
+
 def redraw() -> float:
     """Draw the window once, and return how long it took."""
     started = time.perf_counter()
@@ -267,10 +280,10 @@ def steps() -> driver.Steps:
     results["final render"] = [photons() is not viewport_photons, photons().stored]
     yield 1.0
     scene.render.engine = "BLENDER_WORKBENCH"
-    yield 0.5
+    yield from settled("overlay_other_engine.png")
     none = picture("overlay_other_engine.png")
     scene.photon_maps_overlay.show = False
-    yield 0.5
+    yield from settled("overlay_other_engine.png")
     results["other engine"] = float(np.abs(picture("overlay_other_engine.png") - none).max())
     scene.render.engine = "PHOTON_MAPS"
     scene.photon_maps_overlay.show = True
