@@ -221,12 +221,17 @@ float emitted_power(const Lamp &lamp, const SceneSphere &sphere) {
     return power;
 }
 
-float possible_irradiance(const Lamp &lamp, Vec3 position) {
+LightReach reach_of(const Lamp &lamp) {
     const float power = average(lamp.power);
-    if (lamp.type == LightType::sun) return power;
-    const float squared = length_squared(lamp.transform.origin - position);
-    if (is_area(lamp)) return power / (pi * std::max(squared, area(lamp)));
-    return power / (4 * pi * std::max(squared, std::max(lamp.width * lamp.width, 1e-20f)));
+    if (lamp.type == LightType::sun) return {{}, 0, 1, power};
+    const float floor = std::max(is_area(lamp) ? area(lamp) : lamp.width * lamp.width, least_floor);
+    return {lamp.transform.origin, power / (is_area(lamp) ? pi : 4 * pi), floor, 0};
+}
+
+float reach_about_center(const Lamp &lamp) {
+    if (!is_area(lamp)) return lamp.width;
+    return (lamp.type == LightType::ellipse ? std::max(lamp.width, lamp.height) : std::hypot(lamp.width, lamp.height)) /
+           2;
 }
 
 std::optional<LampHit> meet_lamp(const Lamp &lamp, Vec3 origin, Vec3 direction) {

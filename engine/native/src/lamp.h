@@ -19,8 +19,14 @@ std::optional<LightSample> sample_lamp(const Lamp &lamp, Vec3 position, float u,
 /// Power that emission shares photons by, mean of RGB, W.
 float emitted_power(const Lamp &lamp, const SceneSphere &sphere);
 
-/// The irradiance that the lamp might bring to a surface at `position`, W/m2: never zero where it shines.
-float possible_irradiance(const Lamp &lamp, Vec3 position);
+/// The least squared distance that irradiance is divided by.
+constexpr float least_floor = 1e-20f;
+
+/// The irradiance that the lamp might bring to a surface: never zero where it shines.
+LightReach reach_of(const Lamp &lamp);
+
+/// Radius of a sphere about its centre that holds a lamp that is no sun.
+float reach_about_center(const Lamp &lamp);
 
 /// The lamp, if it has an extent, that lies in a unit direction from a point: its source is left to the caller.
 std::optional<LampHit> meet_lamp(const Lamp &lamp, Vec3 origin, Vec3 direction);

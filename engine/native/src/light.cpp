@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light.h"
 
+#include <numeric>
+
 #include "lamp.h"
 #include "sampling.h"
 
 namespace photon_maps {
 
 namespace {
-
-constexpr float below_one = 0x1.fffffep-1f;
 
 /// Rays that light is carried by, once it has left the light.
 constexpr uint32_t lit_kinds = 1u << PM_RAY_DIFFUSE | 1u << PM_RAY_GLOSSY | 1u << PM_RAY_TRANSMISSION;
@@ -19,59 +19,54 @@ constexpr float cosine_share = 0.5f;
 
 SceneSphere sphere_of(const Scene &scene) { return {scene.bounds().center(), scene.bounds().radius()}; }
 
+std::vector<float> powers_of(std::span<const Lamp> lamps, const EmissiveTriangles &triangles, const WorldLight &world,
+                             const SceneSphere &sphere) {
+    std::vector<float> powers;
+    for (const Lamp &lamp : lamps) powers.push_back(lamp.visibility & lit_kinds ? emitted_power(lamp, sphere) : 0.0f);
+    powers.push_back(triangles.power());
+    powers.push_back(world.mean_radiance() * 4 * pi * pi * sphere.radius * sphere.radius);
+    return powers;
+}
+
+bool can_be_met(const Lamp &lamp) { return lamp.visibility != 0 && lamp.width > 0 && max_component(lamp.power) > 0; }
+
+std::vector<uint32_t> wide_suns(std::span<const Lamp> lamps) {
+    std::vector<uint32_t> suns;
+    for (uint32_t i = 0; i < lamps.size(); ++i)
+        if (lamps[i].type == LightType::sun && can_be_met(lamps[i])) suns.push_back(i);
+    return suns;
+}
+
+std::vector<LampSphere> spheres_about(std::span<const Lamp> lamps) {
+    std::vector<LampSphere> spheres;
+    for (uint32_t i = 0; i < lamps.size(); ++i)
+        if (lamps[i].type != LightType::sun && can_be_met(lamps[i]))
+            spheres.push_back({i, lamps[i].transform.origin, reach_about_center(lamps[i])});
+    return spheres;
+}
+
 }  // namespace
 
 Lights::Lights(const Scene &scene, std::vector<Lamp> lamps, const World &world)
-    : lamps_(std::move(lamps)), triangles_(scene), world_(scene, world) {
-    const SceneSphere sphere = sphere_of(scene);
-    for (const Lamp &lamp : lamps_) power_.push_back(lamp.visibility & lit_kinds ? emitted_power(lamp, sphere) : 0.0f);
-    power_.push_back(triangles_.power());
-    power_.push_back(world_.mean_radiance() * 4 * pi * pi * sphere.radius * sphere.radius);
-    for (const float power : power_) total_power_ += power;
-}
+    : lamps_(std::move(lamps)),
+      triangles_(scene),
+      world_(scene, world),
+      power_(powers_of(lamps_, triangles_, world_, sphere_of(scene))),
+      total_power_(std::accumulate(power_.begin(), power_.end(), 0.0f)),
+      choice_(reaches()),
+      far_lamps_(wide_suns(lamps_)),
+      spheres_(spheres_about(lamps_)) {}
 
-float Lights::importance(size_t source, Vec3 position) const {
-    if (!shines(source)) return 0;
-    if (source < lamps_.size()) return possible_irradiance(lamps_[source], position);
-    if (source == world_source()) return pi * world_.mean_radiance();
-    const float radius = triangles_.bounds().radius();
-    const float squared = length_squared(triangles_.bounds().center() - position);
-    return triangles_.power() / (2 * pi * std::max(squared, radius * radius));
-}
-
-Lights::Importances Lights::importances(Vec3 position) const {
-    float total = 0, count = 0;
-    for (size_t s = 0; s < source_count(); ++s) {
-        const float own = importance(s, position);
-        total += own;
-        count += own > 0 ? 1.0f : 0.0f;
-    }
-    const float each = count > 0 ? even_share / (1 - even_share) * total / count : 0;
-    return {each, total / (1 - even_share)};
-}
-
-std::optional<Lights::Choice> Lights::choose(Vec3 position, float u) const {
-    const auto [each, total] = importances(position);
-    if (!(total > 0)) return {};
-    Choice choice{0, 0, u * total};
-    for (size_t s = 0; s < source_count(); ++s) {
-        const float own = importance(s, position);
-        if (own <= 0) continue;
-        choice.source = s;
-        choice.probability = own + each;
-        if (choice.left < own + each) break;
-        choice.left -= own + each;
-    }
-    choice.left = std::min(choice.left / choice.probability, below_one);
-    choice.probability /= total;
-    return choice;
-}
-
-float Lights::choice_probability(size_t source, Vec3 position) const {
-    const float own = importance(source, position);
-    if (own <= 0) return 0;
-    const auto [each, total] = importances(position);
-    return (own + each) / total;
+std::vector<LightReach> Lights::reaches() const {
+    std::vector<LightReach> reaches(source_count());
+    for (size_t lamp = 0; lamp < lamps_.size(); ++lamp)
+        if (shines(lamp)) reaches[lamp] = reach_of(lamps_[lamp]);
+    const Bounds &bounds = triangles_.bounds();
+    const float least = std::max(bounds.radius() * bounds.radius(), least_floor);
+    if (shines(triangles_source()))
+        reaches[triangles_source()] = {bounds.center(), triangles_.power() / (2 * pi), least, 0};
+    if (shines(world_source())) reaches[world_source()].constant = pi * world_.mean_radiance();
+    return reaches;
 }
 
 std::optional<LightSample> Lights::sample(size_t source, Vec3 position, Vec3 normal, bool both_sides,

@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "emissive_triangles.h"
+#include "lamp_spheres.h"
+#include "light_choice.h"
 #include "light_sample.h"
 #include "scene.h"
 #include "world_light.h"
 
 namespace photon_maps {
-
-/// Share of choices among lights that does not ask how strong they are: a dim lamp may be all that lights a room beside
-/// which another one is bright, and what is hardly ever chosen is noise that no picture gets rid of.
-constexpr float even_share = 0.05f;
 
 enum class LightType : uint32_t { point = 0, sun = 1, spot = 2, rectangle = 3, ellipse = 4 };
 
@@ -53,18 +51,19 @@ class Lights {
     /// Power of a source, mean of RGB, W.
     float power(size_t source) const { return power_[source]; }
 
-    /// A source chosen by chance.
-    struct Choice {
-        size_t source;
-        float probability;
-        float left;  ///< what is left of the random number, uniform in [0, 1) again
-    };
+    /// Chances of the sources by the irradiance that they might bring to a point, a little also by how many might bring
+    /// any.
+    LightChoice::Chances chances_at(Vec3 position) const { return choice_.at(position); }
 
-    /// Chooses a source by the irradiance that it might bring to the point, a little also by how many might bring any.
-    std::optional<Choice> choose(Vec3 position, float u) const;
+    /// Chooses a source; nothing where none brings anything.
+    std::optional<LightChoice::Choice> choose(const LightChoice::Chances &chances, float u) const {
+        return choice_.choose(chances, u);
+    }
 
     /// Probability with which choose() takes a source.
-    float choice_probability(size_t source, Vec3 position) const;
+    float choice_probability(size_t source, Vec3 position) const {
+        return choice_.probability(choice_.at(position), source);
+    }
 
     /// Chooses a direction to a source that shines. What is invisible to the receiver is not left out: see
     /// LightSample::visibility.
@@ -84,8 +83,11 @@ class Lights {
     /// against sample() adds up all.
     template <class Visit>
     void meet_all(const Ray &ray, bool is_open, Visit &&visit) const {
-        for (size_t source = 0; source < lamps_.size(); ++source)
+        const auto ask = [&](size_t source) {
             if (const std::optional<LampHit> hit = meet(source, ray, is_open)) visit(*hit);
+        };
+        for (const uint32_t source : far_lamps_) ask(source);
+        spheres_.visit(ray, ask);
     }
 
     /// Density by solid angle with which sample() chooses the direction from a position to a point of an emissive
@@ -99,12 +101,7 @@ class Lights {
     float world_pdf(Vec3 direction, Vec3 normal, bool both_sides) const;
 
   private:
-    float importance(size_t source, Vec3 position) const;
-    /// What choose() adds to the importance of each source that might bring anything, and the sum of all.
-    struct Importances {
-        float each, total;
-    };
-    Importances importances(Vec3 position) const;
+    std::vector<LightReach> reaches() const;
     std::optional<LightSample> sample_world(Vec3 normal, bool both_sides, const RayState &receiver,
                                             const std::array<float, 3> &u) const;
 
@@ -113,6 +110,9 @@ class Lights {
     WorldLight world_;
     std::vector<float> power_;  // of each source, mean of RGB, W
     float total_power_ = 0;
+    LightChoice choice_;
+    std::vector<uint32_t> far_lamps_;  // that are met whichever way the ray goes: suns of a width
+    LampSpheres spheres_;              // of the others that can be met
 };
 
 }  // namespace photon_maps

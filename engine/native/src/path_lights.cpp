@@ -13,20 +13,22 @@ void CameraPath::sample_lights(const SurfacePoint &hit, const Shading &shading) 
         const Sequence::Points points = sequence_.points(count);
         for (uint32_t i = 0; i < count; ++i) {
             const auto u = points[i];
-            if (const std::optional<Lights::Choice> choice = choose(u[2]))
+            if (const std::optional<LightChoice::Choice> choice = choose(u[2]))
                 sample_source(hit, shading, *choice, u, 1 / static_cast<float>(count));
         }
     };
     if (!asks_every_source()) {
-        sample_each([&](float u) { return pass_.lights.choose(hit.position, u); });
+        const LightChoice::Chances chances = pass_.lights.chances_at(hit.position);
+        sample_each([&](float u) { return pass_.lights.choose(chances, u); });
         return;
     }
     for (size_t source = 0; source < pass_.lights.source_count(); ++source)
         if (pass_.lights.shines(source))
-            sample_each([&](float u) -> std::optional<Lights::Choice> { return Lights::Choice{source, 1, u}; });
+            sample_each(
+                [&](float u) -> std::optional<LightChoice::Choice> { return LightChoice::Choice{source, 1, u}; });
 }
 
-void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, const Lights::Choice &choice,
+void CameraPath::sample_source(const SurfacePoint &hit, const Shading &shading, const LightChoice::Choice &choice,
                                const std::array<float, 4> &u, float share) {
     const bool both_sides = (lobes_of(shading) & transmissive_lobes) != 0;
     const auto light = pass_.lights.sample(choice.source, hit.position, hit.shading_normal, both_sides,

@@ -49,7 +49,7 @@ class CameraPath {
     void add_world();
     void describe(const SurfacePoint &hit, const Shading &shading, float depth);
     void sample_lights(const SurfacePoint &hit, const Shading &shading);
-    void sample_source(const SurfacePoint &hit, const Shading &shading, const Lights::Choice &choice,
+    void sample_source(const SurfacePoint &hit, const Shading &shading, const LightChoice::Choice &choice,
                        const std::array<float, 4> &u, float share);
     Vec3 transmittance(const Ray &shadow, const SurfacePoint &hit, size_t source);
     RayState receiver(const Shading &shading) const;

@@ -141,7 +141,7 @@ void check_lamps_in_a_row(Checks &checks) {
         sum += static_cast<double>(lights.choice_probability(source, {1, 2, 3}));
     checks.near(sum, 1, 1e-6, "some source is chosen");
     for (const float u : {0.0f, 0.3f, 0.7f, 0.9999f}) {
-        const auto choice = lights.choose({1, 2, 3}, u);
+        const auto choice = lights.choose(lights.chances_at({1, 2, 3}), u);
         checks.that(choice && choice->probability == lights.choice_probability(choice->source, {1, 2, 3}),
                     "the chosen source's probability");
     }
