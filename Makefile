@@ -310,7 +310,7 @@ build/replay/replay build/replay/replay.exe: $(REPLAY_SOURCES) engine/native/src
 	$(ZIG) c++ -target $(TARGET) -std=c++20 -O3 -Iengine/native/src $(REPLAY_SOURCES) -o $@
 
 # The checks of what is vectorized.
-VECTORIZED := test_photon_map test_filter test_estimate test_nested_estimate
+VECTORIZED := test_photon_map test_filter test_estimate test_nested_estimate test_many_lamps
 
 # Wine stands for Windows, qemu for processors without AVX2, for those without AVX-512, and for ARM with its NEON.
 test-wine: .venv/test.stamp build/native/stamp build/replay/replay build/replay/replay.exe $(PACKAGES)

@@ -18,6 +18,7 @@ GAINS = {
     "The kernel's true area": ("kernel_area", "edge_index", "feature_edges", "crossing_edges"),
     "Kernels on bent surfaces": ("coverage",),
     "Photons that are aimed": ("aim", "caster"),
+    "A tree of lights": ("light_choice", "lamp_spheres", "eights"),
     "Radii chosen last": ("nested_film", "nested_estimate", "levels"),
     "A plan from pilot passes": ("plan", "pilot_pixels", "render_plan"),
     "Shrinking radii": ("radius",),
