@@ -14,13 +14,13 @@ constexpr float open_within = 4;
 
 /// What stands for all that a node holds: as far away as their centre of power, and never taken to be nearer than its
 /// own radius.
-struct Cluster {
+struct StandIn {
     LightReach reach;
     float radius = 0;  ///< about the centre, of the sources' positions
 };
 
-Cluster cluster_of_all(std::span<const Cluster> parts) {
-    Cluster whole;
+StandIn stand_in_for(std::span<const StandIn> parts) {
+    StandIn whole;
     whole.reach.floor = 0;
     Vec3 weighted;
     for (const auto &[part, radius] : parts) {
@@ -65,22 +65,22 @@ LightChoice::LightChoice(std::span<const LightReach> sources) : places_(sources.
         bright.push_back(s);
         positions.push_back(sources[s].position);
     }
-    std::vector<Cluster> clusters;
+    std::vector<StandIn> children;
     for (const uint32_t i : order_in_eights(positions)) {
         places_[bright[i]] = static_cast<uint32_t>(sources_.size());
         sources_.push_back(bright[i]);
-        clusters.push_back({sources[bright[i]], 0});
+        children.push_back({sources[bright[i]], 0});
     }
     do {
-        std::vector<Reaches> &level = levels_.emplace_back(node_count(clusters.size()));
-        std::vector<Cluster> above;
-        for (size_t first = 0; first < clusters.size(); first += lanes) {
-            const size_t count = std::min(lanes, clusters.size() - first);
-            const auto parts = std::span<const Cluster>(clusters).subspan(first, count);
+        std::vector<Reaches> &level = levels_.emplace_back(node_count(children.size()));
+        std::vector<StandIn> above;
+        for (size_t first = 0; first < children.size(); first += lanes) {
+            const size_t count = std::min(lanes, children.size() - first);
+            const auto parts = std::span<const StandIn>(children).subspan(first, count);
             for (size_t lane = 0; lane < count; ++lane) level[first / lanes].set(lane, parts[lane].reach);
-            above.push_back(cluster_of_all(parts));
+            above.push_back(stand_in_for(parts));
         }
-        clusters = std::move(above);
+        children = std::move(above);
     } while (levels_.back().size() > top_nodes);
 }
 
