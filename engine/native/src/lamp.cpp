@@ -230,8 +230,8 @@ LightReach reach_of(const Lamp &lamp) {
 
 float reach_about_center(const Lamp &lamp) {
     if (!is_area(lamp)) return lamp.width;
-    return (lamp.type == LightType::ellipse ? std::max(lamp.width, lamp.height) : std::hypot(lamp.width, lamp.height)) /
-           2;
+    const float longer = std::max(lamp.width, lamp.height), shorter = std::min(lamp.width, lamp.height);
+    return (lamp.type == LightType::ellipse ? longer : std::sqrt(longer * longer + shorter * shorter)) / 2;
 }
 
 std::optional<LampHit> meet_lamp(const Lamp &lamp, Vec3 origin, Vec3 direction) {
