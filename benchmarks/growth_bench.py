@@ -151,6 +151,8 @@ def draw(path: Path, rows: Sequence[Row]) -> None:
         curve: Curve = CURVES[name]
         axis.set(xscale="log", xlabel=curve.label, title=f"CPU time {curve.unit}", ylim=(0, None))
         axis.title.set_fontsize(9)
+        axis.set_xticks([r.setting for r in here], [f"{r.setting:,}" for r in here], rotation=30, ha="right")
+        axis.minorticks_off()
         axis.grid(True, alpha=0.3)
         axis.tick_params(labelsize=7)
     axes[0][0].set_ylabel("over the first point")
