@@ -2,7 +2,6 @@
 // The camera pass in the Cornell box with its two blocks: its camera and shadow rays against bare calls of Embree on
 // the same rays, what a second thread brings, and what part of the photons' gathering goes into the kernels' true area.
 #include <cstdint>
-#include <exception>
 
 #include "boxes.h"
 #include "camera_pass.h"
@@ -127,16 +126,9 @@ void measure_area(const Box &box, int rounds) {
 
 /// Usage: PHOTON_MAPS_EMBREE=libembree4.so camera_pass_bench [rounds]
 int main(int argc, char **argv) {
-    const char *path = std::getenv("PHOTON_MAPS_EMBREE");
-    bench::require(path, "set the environment variable PHOTON_MAPS_EMBREE to an Embree 4 library");
-    const int rounds = bench::rounds_asked(argc, argv);
-    bench::print_machine();
-    try {
-        const auto embree = std::make_shared<Embree>(path);
+    bench::run_with_embree(argc, argv, [](const std::shared_ptr<Embree> &embree, int rounds) {
         const Box box(embree);
         measure_passes(box, *embree, rounds);
         measure_area(box, rounds);
-    } catch (const std::exception &error) {
-        bench::require(false, error.what());
-    }
+    });
 }

@@ -31,7 +31,7 @@ from tests.reference_scenes import relative_mean_square_error
 
 MITSUBA, CYCLES, PLAIN = "Mitsuba, LLVM", "Cycles", "plain progressive photon map"
 #: CPU-seconds to relMSE 0.01 in `caustic` of photon mappers that no package registry has: Tungsten's PPM and pbrt-v3's
-#: SPPM, 256 x 256, by the same measure; from the comparison of engines that the project began with, never repeated.
+#: SPPM, 256 x 256, by the same measure; measured elsewhere, once.
 ELSEWHERE = {"Tungsten PPM": 3.4, "pbrt SPPM": 3.6}
 #: CPU-seconds after which the engine gives up.
 PATIENCE = 90.0

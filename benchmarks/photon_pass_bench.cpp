@@ -3,7 +3,6 @@
 // build beside it; and what a second thread brings. In the Cornell box with a matte bumpy sphere, and with a glass
 // ball, where photons that are to make caustics are traced by themselves, too.
 #include <cstdint>
-#include <exception>
 
 #include "boxes.h"
 #include "photon_map.h"
@@ -83,15 +82,8 @@ void run(const std::shared_ptr<Embree> &embree, boxes::Content content, const st
 
 /// Usage: PHOTON_MAPS_EMBREE=libembree4.so photon_pass_bench [rounds]
 int main(int argc, char **argv) {
-    const char *path = std::getenv("PHOTON_MAPS_EMBREE");
-    bench::require(path, "set the environment variable PHOTON_MAPS_EMBREE to an Embree 4 library");
-    const int rounds = bench::rounds_asked(argc, argv);
-    bench::print_machine();
-    try {
-        const auto embree = std::make_shared<Embree>(path);
+    bench::run_with_embree(argc, argv, [](const std::shared_ptr<Embree> &embree, int rounds) {
         run(embree, boxes::Content::bumpy_sphere, "a matte sphere", rounds);
         run(embree, boxes::Content::glass_ball, "a glass ball", rounds);
-    } catch (const std::exception &error) {
-        bench::require(false, error.what());
-    }
+    });
 }

@@ -39,6 +39,7 @@ def run(steps: Steps) -> None:
         return None
 
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.use_preferences_save = False  # what a script sets there is not for the next one
     bpy.app.timers.register(tick, first_interval=0.5, persistent=True)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import subprocess
 import sys
@@ -62,6 +63,13 @@ def steps() -> driver.Steps:
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield 0.5
     set_up(passes=4)
+
+    # What viewports need is loaded before there is one.
+    def is_loaded() -> bool:
+        return not bpy.app.timers.is_registered(windows.module("ui.preload")._load)
+
+    windows.timed(importlib, "import_module", results.setdefault("loading", []))
+    yield from until(is_loaded)
     viewport = windows.module("engine.viewport_render").Viewport
     for name in CALLBACKS:
         windows.timed(viewport, name, results.setdefault("held", {}).setdefault(name, []))

@@ -8,7 +8,7 @@ namespace photon_maps {
 
 namespace {
 
-/// What of the directional albedo goes with the slope, exactly (Fujii's form, integrated in OpenPBR's appendix).
+/// What of the directional albedo goes with the slope, exactly: Fujii's form, integrated over all directions.
 float exact_albedo_rise(float cosine) {
     const float c = cosine, sine = std::sqrt(1 - c * c);
     // The tangent's term tends to cos (2/3) (3/2) as the cosine vanishes.

@@ -25,26 +25,17 @@ Vec3 direction_at(double x, double y) {
             static_cast<float>(std::cos(theta))};
 }
 
-/// Cosine of the colatitude at a height in cells of the coarse grid: a side of a cell, coarse or fine.
-double side_cosine(double y) {
-    static const auto table = [] {
-        std::vector<double> cosines;
-        for (uint32_t i = 0; i <= fine_size * height; ++i)
-            cosines.push_back(std::cos(pi_double * i / (fine_size * height)));
-        return cosines;
-    }();
-    return table[static_cast<size_t>(y * fine_size)];
-}
-
 /// Solid angle of a cell of a size in cells of the coarse grid, whose top is at y.
 double solid_angle(double y, double size) {
-    return 2 * pi_double / width * size * (side_cosine(y) - side_cosine(y + size));
+    return 2 * pi_double / width * size * 2 * std::sin(pi_double * (y + size / 2) / height) *
+           std::sin(pi_double * size / 2 / height);
 }
 
 /// A point of a cell, uniform by solid angle.
 Vec3 direction_in(double x, double y, double size, float u, float v) {
     const double phi = 2 * pi_double * (x + size * static_cast<double>(u)) / width - pi_double;
-    const double top = side_cosine(y), z = top + (side_cosine(y + size) - top) * static_cast<double>(v);
+    const double top = std::cos(pi_double * y / height), bottom = std::cos(pi_double * (y + size) / height);
+    const double z = top + (bottom - top) * static_cast<double>(v);
     const double sine = std::sqrt(std::max(0.0, 1 - z * z));
     return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)), static_cast<float>(z)};
 }
