@@ -73,7 +73,7 @@ help:
 	@echo 'make mutate    break the program in some hundred places, one at a time, and see that a test notices'
 	@echo 'make bench     how far ahead, beside Mitsuba and Cycles, and what each part takes, 10 minutes: [DOCUMENTS=1]'
 	@echo '               [LEAD="--scenes cornell --repetitions 1"]; then the speed of the export and the viewport'
-	@echo 'make growth    time and memory by photons, triangles, lamps and pixels, 5 minutes: [GROWTH=--large] [DOCUMENTS=1]'
+	@echo 'make growth    time and memory by photons, triangles, lamps and pixels: [GROWTH=--large] [DOCUMENTS=1]'
 	@echo 'make chart     error against CPU time, all methods and Cycles, 30 minutes: [SCENE=gap] [METHOD="final gather"]'
 	@echo '               for a scene of yours: BLEND=file.blend [OUT=picture.png] [SECONDS=60]'
 	@echo '               [PEERS=1] beside Mitsuba and LuxCore too, [DOCUMENTS=1] brings figures and tables into docs'

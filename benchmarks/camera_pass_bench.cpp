@@ -6,6 +6,7 @@
 #include "boxes.h"
 #include "camera_pass.h"
 #include "photon_trace.h"
+#include "program.h"
 #include "radius.h"
 #include "recorded_rays.h"
 

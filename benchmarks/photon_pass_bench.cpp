@@ -7,6 +7,7 @@
 #include "boxes.h"
 #include "photon_map.h"
 #include "photon_trace.h"
+#include "program.h"
 #include "recorded_rays.h"
 
 using namespace photon_maps;

@@ -85,6 +85,11 @@ def workers() -> list:
     return list(module._workers) if module else []
 
 
+def open_workers() -> list:
+    """Return those of viewports that there are."""
+    return [worker for worker in workers() if not worker._is_closed]
+
+
 def threads() -> int:
     """Return how many threads render for viewports."""
     return sum(thread.name == "photon_maps viewport" for thread in threading.enumerate())
@@ -101,5 +106,4 @@ def until(condition: Callable[[], bool], seconds: float = 180.0, interval: float
 
 def converged() -> bool:
     """Say whether all viewports are done, and there is one."""
-    open_ones = [worker for worker in workers() if not worker._is_closed]
-    return bool(open_ones) and not any(worker.is_busy for worker in open_ones)
+    return bool(open_workers()) and not any(worker.is_busy for worker in open_workers())

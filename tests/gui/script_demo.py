@@ -11,13 +11,12 @@ sys.path.insert(0, os.getcwd())
 import bpy
 import driver
 import windows
-from driver import in_viewport, results, screenshot, shade, threads, until, workers
+from driver import in_viewport, open_workers, results, screenshot, shade, threads, until
 
 
 def has_picture() -> bool:
     """Say whether the viewport shows a first picture."""
-    current = [worker for worker in workers() if not worker._is_closed]
-    return len(current) == 1 and current[0].picture is not None
+    return [worker.picture is not None for worker in open_workers()] == [True]
 
 
 def undo(operator: str) -> driver.Steps:

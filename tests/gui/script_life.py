@@ -14,7 +14,7 @@ sys.path.insert(0, os.getcwd())
 import bpy
 import driver
 import windows
-from driver import converged, in_viewport, results, screenshot, shade, threads, until, viewports, workers
+from driver import converged, in_viewport, open_workers, results, screenshot, shade, threads, until, viewports
 from mathutils import Quaternion
 
 LONG = 100_000  #: passes that no test waits for
@@ -40,18 +40,14 @@ def set_value(name: str, value: int) -> None:
         area.tag_redraw()
 
 
-def current() -> list:
-    return [worker for worker in workers() if not worker._is_closed]
-
-
 def loads() -> int:
     """How many scenes the threads have been given."""
-    return len({id(worker._request.scene) for worker in current()})
+    return len({id(worker._request.scene) for worker in open_workers()})
 
 
 def new_picture(change, is_scene_new: bool, number: int = 0) -> driver.Steps:
     """Make a change; wait for a picture of it, of another scene or the same one."""
-    (worker,) = current()
+    (worker,) = open_workers()
     request, picture = worker._request, worker.picture
     change()
     yield from until(lambda: worker._request is not request)
@@ -79,7 +75,7 @@ def steps() -> driver.Steps:
     shade("RENDERED")
     yield from until(converged)
     yield 1.0
-    (worker,) = current()
+    (worker,) = open_workers()
     picture, spent = worker.picture, time.process_time()
     yield 3.0
     results["idle_share"] = (time.process_time() - spent) / 3.0
@@ -158,24 +154,24 @@ def steps() -> driver.Steps:
     bpy.data.objects["Cube"].location.x = 2.0
     push("after")
     yield 0.5
-    moved = current()[0]._request.scene.instances.transforms
+    moved = open_workers()[0]._request.scene.instances.transforms
     with in_viewport():
         bpy.ops.ed.undo()
-    yield from until(lambda: current() and (current()[0]._request.scene.instances.transforms != moved).any())
+    yield from until(lambda: open_workers() and (open_workers()[0]._request.scene.instances.transforms != moved).any())
     with in_viewport():
         bpy.ops.ed.redo()
-    yield from until(lambda: (current()[0]._request.scene.instances.transforms == moved).all())
+    yield from until(lambda: (open_workers()[0]._request.scene.instances.transforms == moved).all())
 
     # Local view shows what is selected.
-    meshes = len(current()[0]._request.scene.meshes)
+    meshes = len(open_workers()[0]._request.scene.meshes)
     with in_viewport():
         bpy.ops.object.select_all(action="DESELECT")
         bpy.data.objects["Light"].select_set(True)
         bpy.ops.view3d.localview()
-    yield from until(lambda: len(current()[0]._request.scene.meshes) < meshes)
+    yield from until(lambda: len(open_workers()[0]._request.scene.meshes) < meshes)
     with in_viewport():
         bpy.ops.view3d.localview()
-    yield from until(lambda: len(current()[0]._request.scene.meshes) == meshes)
+    yield from until(lambda: len(open_workers()[0]._request.scene.meshes) == meshes)
 
     # Playback.
     bpy.data.objects["Cube"].keyframe_insert("location", frame=1)
@@ -216,7 +212,7 @@ def steps() -> driver.Steps:
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
     yield 0.5
     shade("RENDERED", 1)
-    yield from until(lambda: threads() == 2 and all(worker.picture for worker in current()))
+    yield from until(lambda: threads() == 2 and all(worker.picture for worker in open_workers()))
     screenshot("life_two_viewports.png")
     with in_viewport(1):
         bpy.ops.wm.window_new()
@@ -242,11 +238,11 @@ def steps() -> driver.Steps:
     bpy.ops.wm.save_as_mainfile(filepath=path)
 
     def load() -> driver.Steps:
-        yield from until(lambda: current() and current()[0].picture)
+        yield from until(lambda: open_workers() and open_workers()[0].picture)
         bpy.ops.wm.open_mainfile(filepath=path)
         yield from until(lambda: threads() == 0)
         shade("RENDERED")
-        yield from until(lambda: threads() == 1 and current()[0].picture)
+        yield from until(lambda: threads() == 1 and open_workers()[0].picture)
 
     yield from load()
     yield from load()
@@ -260,7 +256,7 @@ def steps() -> driver.Steps:
     scene().render.engine = "PHOTON_MAPS"
     set_value("passes", LONG)
     shade("RENDERED")
-    yield from until(lambda: threads() == 1 and current()[0].picture)  # Blender quits in the middle of a pass
+    yield from until(lambda: threads() == 1 and open_workers()[0].picture)  # Blender quits in the middle of a pass
 
 
 driver.run(steps())

@@ -12,7 +12,7 @@ import bpy
 import driver
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from driver import results, screenshot, shade, until, viewports, workers
+from driver import open_workers, results, screenshot, shade, until, viewports
 from mathutils import Euler, Vector
 
 #: Corners of a box that leans in no view's direction.
@@ -21,7 +21,7 @@ FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (
 
 
 def current():
-    (worker,) = [worker for worker in workers() if not worker._is_closed]
+    (worker,) = open_workers()
     return worker
 
 
