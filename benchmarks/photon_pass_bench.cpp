@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "boxes.h"
+#include "photon_lists.h"
 #include "photon_map.h"
 #include "photon_trace.h"
 #include "program.h"
@@ -41,7 +42,8 @@ void measure(const std::string &name, const Pass &pass, pm_photon_kind kind, Emb
     std::printf("%s: %zu rays, %zu photons stored, %zu in the map\n", name.c_str(), recorded.size(), traced.size(),
                 photons.size());
 
-    const auto build = [&](int threads) { PhotonMap(photons, threads, nullptr); };
+    PhotonLists lists(photons, 2 * rounds);
+    const auto build = [&](int threads) { PhotonMap(lists.take(), threads, nullptr); };
     const std::vector<bench::Times> times =
         bench::run_by_turns(rounds, {[&] { trace_bare(recorded, 1); }, [&] { pass(1); }, [&] { build(1); },
                                      [&] { trace_bare(recorded, 2); }, [&] { pass(2); }, [&] { build(2); }});

@@ -60,32 +60,30 @@ struct Candidates {
 /// not behind an edge of it and not from below it where it is bent.
 class CandidateTest {
   public:
-    CandidateTest(const PhotonArrays &photons, const Query &query, float radius, std::span<const Barrier> barriers)
-        : photons_(photons),
-          query_(query),
+    CandidateTest(const Query &query, float radius, std::span<const Barrier> barriers)
+        : query_(query),
           barriers_(barriers),
           frame_(query.normal),
           inverse_radius_(1 / radius),
           is_smooth_(!query.shading && !(query.shading_normal == query.normal)) {}
 
-    /// Tests the photons [i, i + 8). Returns false if none is within the radius and near the plane.
-    /// @param mask which of them to test
-    [[gnu::always_inline]] bool operator()(size_t i, Int8 mask, Candidates &found) const {
+    /// Tests eight photons. Returns false if none is within the radius and near the plane.
+    [[gnu::always_inline]] bool operator()(const PhotonBlock &photons, Candidates &found) const {
         // Within the radius and near the plane; lengths are in radii.
         const Vec3 p = query_.position, n = query_.normal;
-        const Vec3x8 d{(load(&photons_.x[i]) - p.x) * inverse_radius_, (load(&photons_.y[i]) - p.y) * inverse_radius_,
-                       (load(&photons_.z[i]) - p.z) * inverse_radius_};
+        const Vec3x8 d{(load(photons.x) - p.x) * inverse_radius_, (load(photons.y) - p.y) * inverse_radius_,
+                       (load(photons.z) - p.z) * inverse_radius_};
         const Float8 distance_squared = d.x * d.x + d.y * d.y + d.z * d.z, height = dot(d, n);
-        mask &= (distance_squared < 1) & (abs(height) < plane_tolerance);
+        Int8 mask = (distance_squared < 1) & (abs(height) < plane_tolerance);
         if (!any(mask)) return false;
 
         // On the same side of the same surface, and not behind an edge of it.
-        mask &= dot(unpack_normals(load(&photons_.normal[i])), n) > normal_tolerance * 127;
+        mask &= dot(unpack_normals(load(photons.normal)), n) > normal_tolerance * 127;
         if (!barriers_.empty()) {
             const Float8 u = dot(d, frame_.x), v = dot(d, frame_.y);
             for (const Barrier &barrier : barriers_) mask &= ~barrier.hides(u, v);
         }
-        if (query_.is_bent) mask &= dot(unpack_directions(load(&photons_.direction[i])), n) < 0;
+        if (query_.is_bent) mask &= dot(unpack_directions(load(photons.direction)), n) < 0;
         found = {mask, distance_squared, height};
         return true;
     }
@@ -94,7 +92,6 @@ class CandidateTest {
     bool is_smooth() const { return is_smooth_; }
 
   private:
-    const PhotonArrays &photons_;
     const Query &query_;
     std::span<const Barrier> barriers_;
     Frame frame_;

@@ -57,14 +57,14 @@ void LampSpheres::Spheres::set(size_t lane, const LampSphere &sphere) {
 }
 
 uint64_t LampSpheres::Spheres::met_by(const Line &line) const {
-    const Float8 to_x = load(x.data()) - broadcast(line.origin.x), to_y = load(y.data()) - broadcast(line.origin.y),
-                 to_z = load(z.data()) - broadcast(line.origin.z);
+    const Float8 to_x = load(x) - broadcast(line.origin.x), to_y = load(y) - broadcast(line.origin.y),
+                 to_z = load(z) - broadcast(line.origin.z);
     const Float8 along =
         to_x * broadcast(line.direction.x) + to_y * broadcast(line.direction.y) + to_z * broadcast(line.direction.z);
     const Float8 off_x = to_x - broadcast(line.direction.x) * along, off_y = to_y - broadcast(line.direction.y) * along,
                  off_z = to_z - broadcast(line.direction.z) * along;
     const Float8 squared = to_x * to_x + to_y * to_y + to_z * to_z;
-    const Float8 own = load(radius.data());
+    const Float8 own = load(radius);
     const Float8 reach = own * own + squared * broadcast(off_error);
     const Int8 near_line = off_x * off_x + off_y * off_y + off_z * off_z <= reach;
     const Int8 before_end = along - abs(along) * broadcast(along_error) - own <= broadcast(line.far);

@@ -94,13 +94,13 @@ void LightChoice::Reaches::set(size_t lane, const LightReach &reach) {
 }
 
 [[gnu::always_inline]] inline Float8 LightChoice::Reaches::squared_distances(Vec3 position) const {
-    const Float8 to_x = load(x.data()) - broadcast(position.x), to_y = load(y.data()) - broadcast(position.y),
-                 to_z = load(z.data()) - broadcast(position.z);
+    const Float8 to_x = load(x) - broadcast(position.x), to_y = load(y) - broadcast(position.y),
+                 to_z = load(z) - broadcast(position.z);
     return to_x * to_x + to_y * to_y + to_z * to_z;
 }
 
 [[gnu::always_inline]] inline Float8 LightChoice::Reaches::importances(Float8 squared_distances) const {
-    return load(constant.data()) + load(factor.data()) / max(squared_distances, load(floor.data()));
+    return load(constant) + load(factor) / max(squared_distances, load(floor));
 }
 
 uint32_t LightChoice::sources_below(uint32_t level, uint32_t child) const {
@@ -136,8 +136,8 @@ LightChoice::Chances LightChoice::at(Vec3 position) const {
     node.opened = {};
     node.sources = sources_below(level + 1, place);
     if (level > 0) {
-        const Int8 has_place = load(reaches.factor.data()) > broadcast(0);
-        uint64_t near = bytes(has_place & (squared < broadcast(open_within) * load(reaches.floor.data())));
+        const Int8 has_place = load(reaches.factor) > broadcast(0);
+        uint64_t near = bytes(has_place & (squared < broadcast(open_within) * load(reaches.floor)));
         while (near != 0 && !chances.nodes.full()) {
             const uint32_t lane = take_first(near), child = node.place.child(lane);
             chances.nodes.emplace_back().place = {level - 1, child};

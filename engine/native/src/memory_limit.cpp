@@ -51,9 +51,10 @@ size_t picture_bytes(uint32_t width, uint32_t height, uint32_t buffers) {
 }
 
 double photons_with_room(size_t limit, size_t taken, bool keeps_lists) {
-    // The list of the photons, their map, and what sorts them; a kept list is beside that of the next pass.
-    constexpr size_t bytes_to_sort = 24, least_room = 1 << 20;
-    const size_t bytes = (keeps_lists ? 3 : 2) * sizeof(Photon) + bytes_to_sort;
+    // The list of the photons, in whose place their map is built, and the map's boxes; a kept list stays beside its map
+    // and the list of the next pass.
+    constexpr size_t bytes_of_boxes = 4, least_room = 1 << 20;
+    const size_t bytes = (keeps_lists ? 3 : 1) * sizeof(Photon) + bytes_of_boxes;
     const size_t room = limit > taken ? limit - taken : 0;
     if (room < least_room)
         throw MemoryLimitExceeded("the scene and the picture take about " + megabytes(taken) +

@@ -7,49 +7,41 @@ namespace photon_maps {
 
 namespace {
 
-/// What a query sums over the photons around it, for eight radii; called with runs of photons.
+/// What a query sums over the photons around it, for eight radii; called with eight photons at a time.
 class LevelGather {
   public:
     /// @param kernel the largest
     /// @param per_area the square of its radius over those of the levels
-    LevelGather(const PhotonArrays &photons, const Query &query, const Kernel &kernel,
-                std::span<const Barrier> barriers, Float8 per_area)
-        : photons_(photons),
-          query_(query),
-          kernel_(kernel),
-          test_(photons, query, kernel.radius, barriers),
-          per_area_(per_area) {}
+    LevelGather(const Query &query, const Kernel &kernel, std::span<const Barrier> barriers, Float8 per_area)
+        : query_(query), kernel_(kernel), test_(query, kernel.radius, barriers), per_area_(per_area) {}
 
-    [[gnu::always_inline]] void operator()(size_t begin, size_t end) {
-        for (size_t i = begin; i < end; i += lanes) add_block(i, first_lanes(end - i));
+    /// Puts eight photons to the tests of the largest radius, then adds those that passed one by one.
+    [[gnu::always_inline]] void operator()(const PhotonBlock &photons) {
+        Candidates found;
+        if (!test_(photons, found)) return;
+        uint64_t left = bytes(found.mask);
+        if (left == 0) return;
+        Float8 factors = broadcast(1);
+        if (test_.is_smooth()) factors = shading_weights(load(photons.direction), query_);
+        // The disc that just holds a photon, by its distance and by its height.
+        const Float8 height = found.height * (1 / plane_tolerance);
+        const Float8 least = max(found.distance_squared, height * height);
+        while (left != 0) {
+            const uint32_t lane = take_first(left);
+            add(photons, lane, found.distance_squared[lane], least[lane], factors[lane]);
+        }
     }
 
     const Levels &sum() const { return sum_; }
     const Float8 &weight() const { return weight_; }
 
   private:
-    /// Puts eight photons to the tests of the largest radius, then adds those that passed one by one.
-    [[gnu::always_inline]] void add_block(size_t i, Int8 mask) {
-        Candidates found;
-        if (!test_(i, mask, found)) return;
-        uint64_t left = bytes(found.mask);
-        if (left == 0) return;
-        Float8 factors = broadcast(1);
-        if (test_.is_smooth()) factors = shading_weights(load(&photons_.direction[i]), query_);
-        // The disc that just holds a photon, by its distance and by its height.
-        const Float8 height = found.height * (1 / plane_tolerance);
-        const Float8 least = max(found.distance_squared, height * height);
-        while (left != 0) {
-            const uint32_t lane = take_first(left);
-            add(i + lane, found.distance_squared[lane], least[lane], factors[lane]);
-        }
-    }
-
-    [[gnu::always_inline]] void add(size_t photon, float distance_squared, float least, float factor) {
+    [[gnu::always_inline]] void add(const PhotonBlock &photons, size_t lane, float distance_squared, float least,
+                                    float factor) {
         const Int8 mask = least * per_area_ < 1;
         const Float8 weight = factor * select(mask, kernel_.weights(distance_squared * per_area_));
-        Vec3 flux{photons_.red[photon], photons_.green[photon], photons_.blue[photon]};
-        if (query_.shading) flux *= scattered_share(query_, -unpack_direction(photons_.direction[photon]));
+        Vec3 flux = photons.flux(lane);
+        if (query_.shading) flux *= scattered_share(query_, -unpack_direction(photons.direction[lane]));
         sum_.red += weight * flux.x;
         sum_.green += weight * flux.y;
         sum_.blue += weight * flux.z;
@@ -58,7 +50,6 @@ class LevelGather {
         weight_ += weight;
     }
 
-    const PhotonArrays &photons_;
     const Query &query_;
     const Kernel &kernel_;
     CandidateTest test_;
@@ -114,7 +105,7 @@ Levels estimate_levels(const PhotonMap &map, const EdgeIndex &edges, const Query
     // Sums over the photons.
     Float8 weight;
     Levels sum = vectorized([&] {
-        LevelGather gather(map.photons(), query, largest, region.barriers(), per_area);
+        LevelGather gather(query, largest, region.barriers(), per_area);
         map.visit_range(query.position, largest.radius, gather);
         weight = gather.weight();
         return gather.sum();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one photon leaves behind at a diffuse hit, in 32 bytes.
+// What one photon leaves behind at a diffuse hit, in 32 bytes, alone or among eight.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "simd.h"
 #include "vec.h"
 
 namespace photon_maps {
@@ -46,7 +48,7 @@ inline Vec3 unpack_direction(uint32_t packed) {
 }
 
 /// A photon where it hit a diffuse surface.
-struct Photon {
+struct alignas(32) Photon {
     Vec3 position;
     Vec3 flux;           ///< W, as it arrived: not yet multiplied by the albedo
     uint32_t normal;     ///< pack_normal: geometric normal on the side that was hit; payload: bounces, 255 at most
@@ -55,6 +57,28 @@ struct Photon {
     uint32_t bounce() const { return normal >> 24; }
 };
 static_assert(sizeof(Photon) == 32);
+
+/// Eight photons as a structure of arrays, in as many bytes as one after the other. In the places of missing ones are
+/// photons at infinity that carry nothing.
+struct alignas(32) PhotonBlock {
+    std::array<float, lanes> x, y, z;
+    std::array<float, lanes> red, green, blue;      ///< flux in W
+    std::array<uint32_t, lanes> normal, direction;  ///< as in Photon
+
+    void set(size_t lane, const Photon &photon) {
+        x[lane] = photon.position.x;
+        y[lane] = photon.position.y;
+        z[lane] = photon.position.z;
+        red[lane] = photon.flux.x;
+        green[lane] = photon.flux.y;
+        blue[lane] = photon.flux.z;
+        normal[lane] = photon.normal;
+        direction[lane] = photon.direction;
+    }
+    Vec3 position(size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+    Vec3 flux(size_t lane) const { return {red[lane], green[lane], blue[lane]}; }
+};
+static_assert(sizeof(PhotonBlock) == lanes * sizeof(Photon));
 
 /// What a photon came from, for those who look at photons one by one. An estimate needs none of it, so that it is not
 /// kept with the photons of a render but traced again.

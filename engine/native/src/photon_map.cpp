@@ -10,63 +10,35 @@ namespace photon_maps {
 
 namespace {
 
-/// A photon while the tree is built.
-struct Item {
-    std::array<float, 3> position;
-    uint32_t index;
-};
-
-/// Returns the axis along which the items reach furthest.
-size_t widest_axis(std::span<const Item> items) {
-    using Float4 = float __attribute__((vector_size(16)));
-    static_assert(sizeof(Item) == sizeof(Float4));
-    Float4 low{infinity, infinity, infinity, infinity}, high = -low;
-    for (const Item &item : items) {
-        const auto position = std::bit_cast<Float4>(item);  // and an index in the lane that is not read
-        low = position < low ? position : low;
-        high = position > high ? position : high;
+/// Returns the coordinate in which photons reach furthest.
+float Vec3::*widest_axis(std::span<const Photon> photons) {
+    Vec3 low{infinity, infinity, infinity}, high = -low;
+    for (const Photon &photon : photons) {
+        low = min(low, photon.position);
+        high = max(high, photon.position);
     }
-    const Float4 extent = high - low;
-    const size_t xy = extent[1] > extent[0] ? 1 : 0;
-    return extent[2] > extent[xy] ? 2 : xy;
-}
-
-/// Moves the `middle` items that come first along the widest axis to the front; at one position the index decides.
-void split(std::span<Item> items, size_t middle, const std::atomic<bool> *cancel) {
-    const size_t axis = widest_axis(items);
-    const auto before = [axis](const Item &a, const Item &b) {
-        const float x = a.position[axis], y = b.position[axis];
-        return (x < y) | ((x == y) & (a.index < b.index));
-    };
-    select(items, middle, before, cancel);
+    const Vec3 extent = high - low;
+    if (extent.z > std::max(extent.x, extent.y)) return &Vec3::z;
+    return extent.y > extent.x ? &Vec3::y : &Vec3::x;
 }
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::span<const Photon> photons, int threads, const std::atomic<bool> *cancel) {
-    if (photons.size() > std::numeric_limits<uint32_t>::max()) {
+PhotonMap::PhotonMap(std::vector<Photon> photons, int threads, const std::atomic<bool> *cancel)
+    : size_(photons.size()), photons_(std::move(photons)) {
+    if (size_ > std::numeric_limits<uint32_t>::max()) {
         throw std::length_error("a photon map holds fewer than 2^32 photons; emit fewer of them per pass");
     }
-    allocate(photons.size());
-    if (photons.empty()) return;
+    allocate();
+    if (size_ == 0) return;
 
-    // 1. What the tree is built from: positions and indices.
-    constexpr size_t block = 1 << 16;
-    const auto items = std::make_unique_for_overwrite<Item[]>(size_);
-    parallel_for(threads, (size_ + block - 1) / block, cancel, [&](size_t b) {
-        for (size_t i = b * block; i < std::min((b + 1) * block, size_); ++i) {
-            const Vec3 p = photons[i].position;
-            items[i] = {{p.x, p.y, p.z}, static_cast<uint32_t>(i)};
-        }
-    });
-
-    // 2. The upper nodes, all of one depth at a time. Node j of depth d holds the photons [n j / 2^d, n (j + 1) / 2^d).
-    const auto node = [&](unsigned depth, size_t j) {
-        const size_t begin = size_ * j >> depth;
-        return std::span(items.get() + begin, (size_ * (j + 1) >> depth) - begin);
-    };
+    // 1. The upper nodes, all of one depth at a time: the photons that come first along the widest axis go to the
+    // front.
     const auto split_node = [&](unsigned depth, size_t j) {
-        split(node(depth, j), node(depth + 1, 2 * j).size(), cancel);
+        const std::span<Photon> photons_of_node = node(depth, j);
+        float Vec3::*const axis = widest_axis(photons_of_node);
+        const auto before = [axis](const Photon &a, const Photon &b) { return a.position.*axis < b.position.*axis; };
+        select(photons_of_node, node(depth + 1, 2 * j).size(), before, cancel);
     };
     constexpr unsigned subtree_depth = 11;
     const unsigned upper_depth = depth_ > subtree_depth ? depth_ - subtree_depth : 0;
@@ -74,36 +46,22 @@ PhotonMap::PhotonMap(std::span<const Photon> photons, int threads, const std::at
         parallel_for(threads, size_t{1} << depth, cancel, [&](size_t j) { split_node(depth, j); });
     }
 
-    // 3. Each subtree below, down to its leaves.
+    // 2. Each subtree below, down to its leaves.
     parallel_for(threads, size_t{1} << upper_depth, cancel, [&](size_t root) {
         for (unsigned depth = upper_depth; depth < depth_; ++depth) {
             const unsigned below = depth - upper_depth;
             for (size_t j = root << below; j < (root + 1) << below; ++j) split_node(depth, j);
         }
         const unsigned below = depth_ - upper_depth;
-        for (size_t leaf = root << below; leaf < (root + 1) << below; ++leaf) {
-            const std::span<const Item> order = node(depth_, leaf);
-            std::array<uint32_t, max_leaf_size> indices;
-            std::ranges::transform(order, indices.begin(), &Item::index);
-            fill_leaf(leaf, photons, std::span(indices).first(order.size()));
-        }
+        for (size_t leaf = root << below; leaf < (root + 1) << below; ++leaf) fill_leaf(leaf);
     });
     build_upper_levels();
 }
 
-void PhotonMap::allocate(size_t size) {
-    size_ = size;
-    while ((size_ >> depth_) + 1 > max_leaf_size) ++depth_;
-    const auto add_padded = [this]<typename T>(std::unique_ptr<T[]> &array, T padding) {
-        array = std::make_unique_for_overwrite<T[]>(size_ + lanes);
-        std::fill_n(array.get() + size_, lanes, padding);
-    };
-    for (const auto axis : {&PhotonArrays::x, &PhotonArrays::y, &PhotonArrays::z}) add_padded(photons_.*axis, infinity);
-    for (const auto channel : {&PhotonArrays::red, &PhotonArrays::green, &PhotonArrays::blue}) {
-        add_padded(photons_.*channel, 0.0f);
-    }
-    for (const auto packed : {&PhotonArrays::normal, &PhotonArrays::direction}) add_padded(photons_.*packed, 0u);
-
+void PhotonMap::allocate() {
+    const size_t block_count = (size_ + lanes - 1) / lanes;
+    photons_.resize(block_count * lanes, {{infinity, infinity, infinity}, {}, 0, 0});
+    while ((block_count >> depth_) + 1 > max_leaf_blocks) ++depth_;
     Boxes missing;
     for (size_t axis = 0; axis < 3; ++axis) {
         missing.low[axis].fill(infinity);
@@ -116,27 +74,29 @@ void PhotonMap::allocate(size_t size) {
     } while (nodes > 1);
 }
 
-void PhotonMap::fill_leaf(size_t leaf, std::span<const Photon> photons, std::span<const uint32_t> indices) {
+/// The photons of node j of a depth, as long as they are a list.
+std::span<Photon> PhotonMap::node(unsigned depth, size_t j) {
+    const size_t begin = first_block(depth, j) * lanes;
+    return std::span(photons_).subspan(begin, std::min(first_block(depth, j + 1) * lanes, size_) - begin);
+}
+
+/// Makes blocks of the photons of a leaf, and its box.
+void PhotonMap::fill_leaf(size_t leaf) {
     Vec3 low{infinity, infinity, infinity}, high = -low;
-    size_t i = leaf_begin(leaf);
-    for (const uint32_t index : indices) {
-        const Photon &photon = photons[index];
+    for (const Photon &photon : node(depth_, leaf)) {
         low = min(low, photon.position);
         high = max(high, photon.position);
-        photons_.x[i] = photon.position.x;
-        photons_.y[i] = photon.position.y;
-        photons_.z[i] = photon.position.z;
-        photons_.red[i] = photon.flux.x;
-        photons_.green[i] = photon.flux.y;
-        photons_.blue[i] = photon.flux.z;
-        photons_.normal[i] = photon.normal;
-        photons_.direction[i] = photon.direction;
-        ++i;
     }
     Boxes &boxes = levels_[0][leaf / lanes];
     for (size_t axis = 0; axis < 3; ++axis) {
         boxes.low[axis][leaf % lanes] = low[static_cast<int>(axis)];
         boxes.high[axis][leaf % lanes] = high[static_cast<int>(axis)];
+    }
+    for (size_t b = first_block(depth_, leaf); b < first_block(depth_, leaf + 1); ++b) {
+        const std::span<Photon> eight = std::span(photons_).subspan(b * lanes, lanes);
+        PhotonBlock block;
+        for (size_t lane = 0; lane < lanes; ++lane) block.set(lane, eight[lane]);
+        std::memcpy(static_cast<void *>(eight.data()), &block, sizeof block);
     }
 }
 
@@ -154,7 +114,7 @@ void PhotonMap::build_upper_levels() {
 }
 
 size_t PhotonMap::memory_bytes() const {
-    size_t bytes = size_ == 0 ? 0 : (size_ + lanes) * sizeof(Photon);
+    size_t bytes = photons_.capacity() * sizeof(Photon);
     for (const auto &level : levels_) bytes += level.size() * sizeof(Boxes);
     return bytes;
 }
@@ -172,20 +132,17 @@ class NearestSearch {
     /// Squared distance beyond which no photon can be among the k nearest.
     float limit() const { return limit_; }
 
-    [[gnu::always_inline]] void add_leaf(const PhotonArrays &photons, Vec3 p, size_t begin, size_t end) {
-        for (size_t i = begin; i < end; i += lanes) {
-            const Float8 dx = load(&photons.x[i]) - p.x;
-            const Float8 dy = load(&photons.y[i]) - p.y;
-            const Float8 dz = load(&photons.z[i]) - p.z;
-            const Float8 distance_squared = dx * dx + dy * dy + dz * dz;
-            std::array<float, lanes> distance;
-            std::memcpy(distance.data(), &distance_squared, sizeof distance_squared);
-            for (uint64_t near = bytes((distance_squared <= limit_) & first_lanes(end - i)); near != 0;) {
-                const uint32_t lane = take_first(near);
-                buffer_[count_++] = {distance[lane], static_cast<uint32_t>(i + lane)};
-            }
-            if (count_ + lanes > buffer_.size()) keep_nearest();
+    /// @param first index of the first of eight photons
+    [[gnu::always_inline]] void add(const PhotonBlock &photons, size_t first, Vec3 p) {
+        const Float8 dx = load(photons.x) - p.x, dy = load(photons.y) - p.y, dz = load(photons.z) - p.z;
+        const Float8 distance_squared = dx * dx + dy * dy + dz * dz;
+        std::array<float, lanes> distance;
+        std::memcpy(distance.data(), &distance_squared, sizeof distance_squared);
+        for (uint64_t near = bytes(distance_squared <= limit_); near != 0;) {
+            const uint32_t lane = take_first(near);
+            buffer_[count_++] = {distance[lane], static_cast<uint32_t>(first + lane)};
         }
+        if (count_ + lanes > buffer_.size()) keep_nearest();
     }
 
     void finish() {
@@ -229,6 +186,7 @@ void PhotonMap::nearest(Vec3 p, size_t k, float max_radius, std::vector<Neighbor
             size_t next, count;
             std::array<Child, lanes> children;
         };
+        const std::span<const PhotonBlock> all = blocks();
         NearestSearch search(k, max_radius, neighbors);
         std::array<Step, max_levels> path;
         const auto enter = [&](size_t level, size_t group) {
@@ -260,7 +218,8 @@ void PhotonMap::nearest(Vec3 p, size_t k, float max_radius, std::vector<Neighbor
             if (level > 0) {
                 enter(--level, child);
             } else {
-                search.add_leaf(photons_, p, leaf_begin(child), leaf_begin(child + 1));
+                for (size_t b = first_block(depth_, child); b < first_block(depth_, child + 1); ++b)
+                    search.add(all[b], b * lanes, p);
             }
         }
         search.finish();

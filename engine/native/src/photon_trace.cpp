@@ -15,7 +15,8 @@ void append(std::vector<T> &list, const std::vector<T> &more) {
 }
 
 /// Appends the photons of chunks, in their order.
-/// @param share of all photons that will have been traced then: room is made for the rest at once
+/// @param share of all photons that will have been traced then: room is made at once for the rest, and for those that
+///     a map adds to the last eight
 void append(TracedPhotons &all, const std::vector<TracedPhotons> &chunks, double share) {
     for (size_t kind = 0; kind < all.photons.size(); ++kind) {
         std::vector<Photon> &list = all.photons[kind];
@@ -24,7 +25,7 @@ void append(TracedPhotons &all, const std::vector<TracedPhotons> &chunks, double
         constexpr double margin = 1.02;
         if (count > list.capacity()) {
             const double expected = share < 1 ? margin * static_cast<double>(count) / share : 0;
-            list.reserve(std::max(count, static_cast<size_t>(expected)));
+            list.reserve(std::max(count, static_cast<size_t>(expected)) + lanes);
         }
         for (const TracedPhotons &chunk : chunks) {
             append(list, chunk.photons[kind]);

@@ -35,8 +35,8 @@ struct PilotPhotons {
         tracing.first = 0;
         tracing.count = std::min(pass.count, max_pilot_photons);
         tracing.seed = hash(pass.seed, pilot_stream);
-        const TracedPhotons traced = trace_photons(scene, emission, tracing, cancel);
-        map = PhotonMap(traced[kind], pass.threads, cancel);
+        TracedPhotons traced = trace_photons(scene, emission, tracing, cancel);
+        map = PhotonMap(std::move(traced.photons[kind]), pass.threads, cancel);
         share = static_cast<double>(tracing.count) / static_cast<double>(pass.count);
     }
 
@@ -72,13 +72,13 @@ float median(std::vector<float> &values) {
 std::vector<float> radii_around_photons(const PhotonMap &map, double k, float max_radius,
                                         const std::atomic<bool> *cancel) {
     std::vector<float> radii;
-    const PhotonArrays &photons = map.photons();
     const size_t step = std::max<size_t>(1, map.size() / pilot_pixels);
     for (size_t i = 0; i < map.size(); i += step) {
         throw_if_cancelled(cancel);
-        const Vec3 normal = normalize(unpack_normal(photons.normal[i]));
-        const Vec3 position{photons.x[i], photons.y[i], photons.z[i]};
-        radii.push_back(radius_holding(map, {position, normal, normal}, static_cast<size_t>(k), max_radius));
+        const PhotonBlock &photons = map.blocks()[i / lanes];
+        const Vec3 normal = normalize(unpack_normal(photons.normal[i % lanes]));
+        radii.push_back(
+            radius_holding(map, {photons.position(i % lanes), normal, normal}, static_cast<size_t>(k), max_radius));
     }
     return radii;
 }

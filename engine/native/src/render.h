@@ -100,7 +100,7 @@ class Render {
     }
     /// Irradiance at a point from photons like those of a kind, by that kind's radius.
     Vec3 irradiance(const PhotonMap &map, pm_photon_kind kind, Vec3 point, Vec3 normal) const;
-    PhotonMap map_of(const std::vector<Photon> &photons) const;
+    PhotonMap map_of(std::vector<Photon> photons) const;
 
   private:
     /// Kernel radii of a pass; 0 where there is no such map.

@@ -70,8 +70,8 @@ PhotonTracing Render::tracing(PhotonPurpose purpose, uint32_t index) const {
             is_global && marks_shadows()};
 }
 
-PhotonMap Render::map_of(const std::vector<Photon> &photons) const {
-    return PhotonMap(photons, settings_.threads, &cancel_);
+PhotonMap Render::map_of(std::vector<Photon> photons) const {
+    return PhotonMap(std::move(photons), settings_.threads, &cancel_);
 }
 
 /// What a pass traces, for the maps that there are.
@@ -114,22 +114,27 @@ Maps Render::build_maps(TracedPhotons &photons, const Radii &radii, bool keeps_l
                                                             maps.caustic.memory_bytes());
     };
     count_memory(photons.size());
-    const auto build = [&](PhotonMap &map, pm_photon_kind kind, const std::vector<Photon> &list) {
-        map = map_of(list);
+    const auto take = [&](pm_photon_kind kind) {
+        return keeps_lists ? photons[kind] : std::exchange(photons.photons[kind], {});
+    };
+    const auto build = [&](PhotonMap &map, std::vector<Photon> list) {
+        map = map_of(std::move(list));
         count_memory(photons.size());
-        if (!keeps_lists) photons.photons[kind] = {};  // the map has copies
     };
     if (settings_.integrator != Integrator::photon_map) return maps;
     if (radii.indirect > 0 && indirect_ == Indirect::gather) {
         // Where the rays of a final gather end, photons bring the lights' own light too.
-        std::vector<Photon> all = photons[PM_PHOTONS_DIRECT];
-        all.insert(all.end(), photons[PM_PHOTONS_INDIRECT].begin(), photons[PM_PHOTONS_INDIRECT].end());
-        count_memory(photons.size() + all.size());
-        build(maps.global, PM_PHOTONS_INDIRECT, all);
+        std::vector<Photon> all = take(PM_PHOTONS_DIRECT);
+        {
+            const std::vector<Photon> indirect = take(PM_PHOTONS_INDIRECT);
+            count_memory(photons.size() + 2 * (all.size() + indirect.size()));
+            all.insert(all.end(), indirect.begin(), indirect.end());
+        }
+        build(maps.global, std::move(all));
     } else if (radii.indirect > 0) {
-        build(maps.global, PM_PHOTONS_INDIRECT, photons[PM_PHOTONS_INDIRECT]);
+        build(maps.global, take(PM_PHOTONS_INDIRECT));
     }
-    if (radii.caustic > 0) build(maps.caustic, PM_PHOTONS_CAUSTIC, photons[PM_PHOTONS_CAUSTIC]);
+    if (radii.caustic > 0) build(maps.caustic, take(PM_PHOTONS_CAUSTIC));
     return maps;
 }
 

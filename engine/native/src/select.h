@@ -13,12 +13,25 @@
 
 namespace photon_maps {
 
+/// Moves the items for which `goes_first` holds to the front; returns how many they are.
+template <typename T, typename Predicate>
+size_t sweep(std::span<T> items, Predicate goes_first) {
+    size_t count = 0;
+    for (size_t i = 0; i < items.size(); ++i) {
+        const T item = items[i];
+        items[i] = items[count];
+        items[count] = item;
+        count += static_cast<size_t>(goes_first(item));
+    }
+    return count;
+}
+
 /// Reorders `items` so that the one at `middle` is where sorting would put it, smaller ones before it and greater
 /// ones behind it (Hoare 1961). Linear time is expected whatever the input: pivots are drawn at random, by a fixed
 /// seed.
 /// @param items fewer than 2^32
 /// @param middle below items.size()
-/// @param less a strict total order: no two items are equal
+/// @param less a strict weak order; which of equal items come first is the same for the same input
 /// @param cancel looked at between sweeps; may be null
 /// @throws Cancelled
 template <typename T, typename Less>
@@ -41,22 +54,20 @@ void select(std::span<T> items, size_t middle, Less less, const std::atomic<bool
 
         // The sweep: items below the pivot move to the front.
         const T pivot = items.back();
-        size_t below = 0;
-        for (size_t i = 0; i + 1 < items.size(); ++i) {
-            const T item = items[i];
-            items[i] = items[below];
-            items[below] = item;
-            below += static_cast<size_t>(less(item, pivot));
-        }
+        const size_t below =
+            sweep(items.first(items.size() - 1), [pivot, less](const T &item) { return less(item, pivot); });
         std::swap(items[below], items.back());
-
-        if (middle == below) return;
         if (middle < below) {
             items = items.first(below);
-        } else {
-            items = items.subspan(below + 1);
-            middle -= below + 1;
+            continue;
         }
+
+        // Where none is below it, all may be equal to it: those that are follow.
+        const size_t equal =
+            below > 0 ? 0 : sweep(items.subspan(1), [pivot, less](const T &item) { return !less(pivot, item); });
+        if (middle <= below + equal) return;
+        items = items.subspan(below + equal + 1);
+        middle -= below + equal + 1;
     }
 }
 

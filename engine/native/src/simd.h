@@ -3,6 +3,7 @@
 // Everything is inlined, so that it takes on the instruction set of the function it is used in.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -16,15 +17,15 @@ constexpr size_t lanes = 8;
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = int32_t __attribute__((vector_size(32)));  ///< of a comparison: -1 where it holds, else 0
 
-[[gnu::always_inline]] inline Float8 load(const float *source) {
+[[gnu::always_inline]] inline Float8 load(const std::array<float, lanes> &source) {
     Float8 v;
-    std::memcpy(&v, source, sizeof v);
+    std::memcpy(&v, source.data(), sizeof v);
     return v;
 }
 
-[[gnu::always_inline]] inline Int8 load(const uint32_t *source) {
+[[gnu::always_inline]] inline Int8 load(const std::array<uint32_t, lanes> &source) {
     Int8 v;
-    std::memcpy(&v, source, sizeof v);
+    std::memcpy(&v, source.data(), sizeof v);
     return v;
 }
 
@@ -33,12 +34,6 @@ using Int8 = int32_t __attribute__((vector_size(32)));  ///< of a comparison: -1
 [[gnu::always_inline]] inline Float8 min(Float8 a, Float8 b) { return a < b ? a : b; }
 [[gnu::always_inline]] inline Float8 max(Float8 a, Float8 b) { return a > b ? a : b; }
 [[gnu::always_inline]] inline Float8 abs(Float8 v) { return max(v, -v); }
-
-/// Returns a mask of the first `count` lanes; of all where there are more.
-[[gnu::always_inline]] inline Int8 first_lanes(size_t count) {
-    const auto n = static_cast<int32_t>(count < lanes ? count : lanes);
-    return Int8{0, 1, 2, 3, 4, 5, 6, 7} < n;
-}
 
 /// Returns v where the mask holds and 0 elsewhere.
 [[gnu::always_inline]] inline Float8 select(Int8 mask, Float8 v) {

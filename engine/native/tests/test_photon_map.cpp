@@ -59,8 +59,8 @@ Sets position_sets() {
 }
 
 float distance_squared(const PhotonMap &map, size_t i, Vec3 p) {
-    const float dx = map.photons().x[i] - p.x, dy = map.photons().y[i] - p.y, dz = map.photons().z[i] - p.z;
-    return dx * dx + dy * dy + dz * dz;
+    const Vec3 d = map.blocks()[i / lanes].position(i % lanes) - p;
+    return d.x * d.x + d.y * d.y + d.z * d.z;
 }
 
 /// The map holds every photon once, whole.
@@ -70,32 +70,40 @@ void check_content(test::Checks &checks, const std::string &name, const PhotonMa
     std::set<uint32_t> seen;
     bool whole = true;
     for (size_t i = 0; i < map.size(); ++i) {
-        const PhotonArrays &a = map.photons();
-        const uint32_t original = a.normal[i];
+        const PhotonBlock &block = map.blocks()[i / lanes];
+        const size_t lane = i % lanes;
+        const uint32_t original = block.normal[lane];
         seen.insert(original);
         if (original >= photons.size()) {
             whole = false;
             break;
         }
         const Photon &p = photons[original];
-        whole = whole && Vec3{a.x[i], a.y[i], a.z[i]} == p.position &&
-                Vec3{a.red[i], a.green[i], a.blue[i]} == p.flux && a.direction[i] == p.direction;
+        whole = whole && block.position(lane) == p.position && block.flux(lane) == p.flux &&
+                block.direction[lane] == p.direction;
     }
     checks.that(whole, name + ": photons are kept as they are");
     checks.that(seen.size() == photons.size(), name + ": every photon is kept once");
+    bool is_padded = true;
+    for (size_t i = map.size(); i < map.blocks().size() * lanes; ++i) {
+        const PhotonBlock &last = map.blocks().back();
+        is_padded = is_padded && last.x[i % lanes] == infinity && last.flux(i % lanes) == Vec3{};
+    }
+    checks.that(is_padded, name + ": what fills the last block is nowhere");
     checks.that(map.memory_bytes() >= 32 * map.size(), name + ": memory is counted");
 }
 
-/// Runs are ascending and hold every photon in range.
+/// Blocks are visited in their order, and hold every photon in range.
 void check_range(test::Checks &checks, const std::string &name, const PhotonMap &map, Vec3 p, float radius) {
     std::vector<bool> visited(map.size());
     size_t previous_end = 0, visits = 0;
     bool ascending = true;
-    map.visit_range(p, radius, [&](size_t begin, size_t end) {
-        ascending = ascending && begin >= previous_end && begin < end && end <= map.size();
-        previous_end = end;
-        for (size_t i = begin; i < end && i < map.size(); ++i) visited[i] = true;
-        visits += end - begin;
+    map.visit_range(p, radius, [&](const PhotonBlock &block) {
+        const size_t begin = static_cast<size_t>(&block - map.blocks().data()) * lanes;
+        ascending = ascending && begin >= previous_end && begin < map.size();
+        previous_end = begin + lanes;
+        for (size_t i = begin; i < std::min(begin + lanes, map.size()); ++i) visited[i] = true;
+        visits += lanes;
     });
     bool complete = true;
     size_t inside = 0;
@@ -104,7 +112,7 @@ void check_range(test::Checks &checks, const std::string &name, const PhotonMap 
         ++inside;
         complete = complete && visited[i];
     }
-    checks.that(ascending, name + ": runs ascend");
+    checks.that(ascending, name + ": blocks are visited in their order");
     checks.that(complete, name + ": every photon in range is visited");
     if (map.size() == 200000) checks.that(visits < 10 * inside + 2000, name + ": few others are visited");
 }
@@ -127,11 +135,8 @@ void check_nearest(test::Checks &checks, const std::string &name, const PhotonMa
 }
 
 bool same(const PhotonMap &a, const PhotonMap &b) {
-    const auto equal = [&](const auto &x, const auto &y) { return std::memcmp(&x[0], &y[0], 4 * a.size()) == 0; };
-    const PhotonArrays &p = a.photons(), &q = b.photons();
-    return a.size() == b.size() && equal(p.x, q.x) && equal(p.y, q.y) && equal(p.z, q.z) && equal(p.red, q.red) &&
-           equal(p.green, q.green) && equal(p.blue, q.blue) && equal(p.normal, q.normal) &&
-           equal(p.direction, q.direction);
+    return a.size() == b.size() &&
+           (a.size() == 0 || std::memcmp(a.blocks().data(), b.blocks().data(), a.blocks().size_bytes()) == 0);
 }
 
 }  // namespace
