@@ -43,7 +43,7 @@ def test_esc_at_any_moment_leaves_blender_whole(corner, watch, count):  # noqa: 
 
 def test_a_render_that_does_not_fit_says_so(corner, extension):
     preferences = bpy.context.preferences.addons[extension.__name__].preferences
-    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 4_000_000
+    corner.photon_maps.use_auto, corner.photon_maps.photon_count = False, 16_000_000
     corner.photon_maps.radius = 0.1
     try:
         preferences.memory_limit = 10
@@ -54,7 +54,7 @@ def test_a_render_that_does_not_fit_says_so(corner, extension):
         with pytest.raises(RuntimeError, match="memory limit"):
             bpy.ops.render.render()
     finally:
-        preferences.memory_limit = 0
+        preferences.memory_limit, corner.photon_maps.photon_count = 0, 4_000_000
     assert not any("memory" in line for line in render_with_summary(corner)[1]["messages"])
 
 

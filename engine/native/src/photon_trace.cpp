@@ -7,7 +7,7 @@ namespace photon_maps {
 
 namespace {
 
-constexpr uint64_t chunk_size = 1024, chunks_at_once = 1024;
+constexpr uint64_t chunk_size = 1024, chunks_at_once = 256;
 
 template <typename T>
 void append(std::vector<T> &list, const std::vector<T> &more) {
