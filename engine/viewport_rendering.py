@@ -20,7 +20,7 @@ from .passes import Pass
 from .session import LoadedScene, Session
 from .settings import Integrator, RenderSettings
 
-COARSE_SECONDS = 0.1  #: that a first picture should take, once there are photon maps
+COARSE_SECONDS = 0.05  #: that a first picture should take, once there are photon maps
 FINE_SECONDS = 1.0  #: that the step to all pixels may take; before longer ones there are pictures in between
 #: Pixels of the finest picture across one of a first picture: at most, and while the cost is not known.
 COARSEST, USUAL = 16, 8

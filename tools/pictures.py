@@ -41,19 +41,19 @@ def pixels_of(image) -> np.ndarray:
     return pixels.reshape(height, width, 4)
 
 
-def save_side_by_side(left: np.ndarray, right: np.ndarray, path: Path) -> None:
+def save_side_by_side(left: np.ndarray, right: np.ndarray, path: Path, quality: int = 93) -> None:
     """Write two pictures of one height, with a white gap between them."""
     gap = np.ones((left.shape[0], GAP, 4), np.float32)
-    save(np.concatenate([left, gap, right], axis=1).astype(np.float32), path)
+    save(np.concatenate([left, gap, right], axis=1).astype(np.float32), path, quality)
 
 
-def save(pixels: np.ndarray, path: Path) -> None:
-    """Write a picture (height, width, 4) as .png or .jpg of eight bits a channel."""
+def save(pixels: np.ndarray, path: Path, quality: int = 93) -> None:
+    """Write a picture (height, width, 4) as .png or .jpg of eight bits a channel; quality is of .jpg, in percent."""
     import bpy
 
     height, width = pixels.shape[:2]
     image = bpy.data.images.new(path.name, width, height, alpha=False)
     image.pixels.foreach_set(pixels.ravel())
     image.filepath_raw, image.file_format = str(path), FORMATS[path.suffix.lower()]
-    image.save(quality=93)
+    image.save(quality=quality)
     bpy.data.images.remove(image)

@@ -14,7 +14,7 @@ import bpy
 
 #: What viewports and the chart import when they are needed.
 MODULES = (
-    *("session", "export.scene", "export.kept", "export.view", "export.view_light"),
+    *("session", "export.nodes", "export.attribute", "export.scene", "export.kept", "export.view", "export.view_light"),
     *("viewport_rendering", "viewport_worker", "capture", "chart.job"),
 )
 LOOK_SECONDS = 0.5

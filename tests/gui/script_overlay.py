@@ -280,6 +280,8 @@ def steps() -> driver.Steps:
     results["final render"] = [photons() is not viewport_photons, photons().stored]
     yield 1.0
     scene.render.engine = "BLENDER_WORKBENCH"
+    # Blender 5.2 may end its smoothing anywhere.
+    bpy.context.preferences.system.viewport_aa = "OFF"
     yield from settled("overlay_other_engine.png")
     none = picture("overlay_other_engine.png")
     scene.photon_maps_overlay.show = False
