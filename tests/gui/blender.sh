@@ -29,8 +29,8 @@ mount --bind /dev "$root/dev"
 cp /etc/resolv.conf /etc/hosts "$root/etc/"
 echo "deb $mirror $suite main" >"$root/etc/apt/sources.list"
 chroot "$root" apt-get update
-chroot "$root" apt-get install -y blender xvfb xauth xdotool imagemagick libgl1-mesa-dri libgl1 libglx-mesa0 libegl1 \
-    libegl-mesa0 python3-numpy python3-requests python3-zstandard python3-attr python3-cattr
+chroot "$root" apt-get install -y blender libjemalloc2 xvfb xauth xdotool imagemagick libgl1-mesa-dri libgl1 libglx-mesa0 \
+    libegl1 libegl-mesa0 python3-numpy python3-requests python3-zstandard python3-attr python3-cattr
 chroot "$root" apt-get clean
 rm -rf "$root"/var/lib/apt/lists/* "$root/etc/resolv.conf" "$root/etc/hosts"
 ln -sf /proc/self/mounts "$root/etc/mtab"

@@ -22,7 +22,10 @@ DIST = HERE.parents[1] / "dist"
 ROOT = Path(os.environ.get("BLENDER_ROOT") or BUILD / "blender-trixie")
 SECONDS = 1200  #: after which a script has hung, on a machine that has other work
 #: What a crash, a broken callback or a thread that was forgotten writes.
-TROUBLE = ("Traceback", "Error:", "EXCEPTION_ACCESS", "Segmentation", "Writing: /", "Fatal Python", "free'd twice")
+TROUBLE = (
+    *("Traceback", "Error:", "EXCEPTION_ACCESS", "Segmentation", "Writing: /", "Fatal Python", "free'd twice"),
+    "cannot be preloaded",
+)
 
 
 #: What is worth knowing but no reason to fail: times depend on the machine.
@@ -66,9 +69,10 @@ class Blender:
             timeout=seconds + 60,
         )
 
-    def run(self, script: str, seconds: int = SECONDS) -> dict:
+    def run(self, script: str, seconds: int = SECONDS, preload: str = "") -> dict:
         """Run a script of this folder in the window; its screenshots go to build/gui.
 
+        :param preload: a library whose functions go before those of all others.
         :return: what it left in driver.results.
         """
         results = self.home / "results.json"
@@ -76,7 +80,8 @@ class Blender:
         for path in HERE.glob("*.py"):
             shutil.copy(path, self.home)
         window = ("--window-geometry", "0", "0", "1280", "800", "--gpu-backend", "opengl")
-        ran = self.call("blender", *window, "--python-exit-code", "4", "--python", script, seconds=seconds)
+        command = ("env", f"LD_PRELOAD={preload}", "blender") if preload else ("blender",)
+        ran = self.call(*command, *window, "--python-exit-code", "4", "--python", script, seconds=seconds)
         pictures = BUILD / "gui"
         pictures.mkdir(parents=True, exist_ok=True)
         for path in self.home.glob("*.png"):
